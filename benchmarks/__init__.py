@@ -8,10 +8,10 @@ the commit of the code. A question that only draws returns None.
 import csv
 import json
 import sys
-import time
 import traceback
 import warnings
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from functools import partial
 from importlib import import_module
 from pathlib import Path
 from typing import Any
@@ -23,7 +23,7 @@ from uplift.common.errors import UpliftWarning
 from uplift.common.files import write_text
 from uplift.common.progress import Progress
 from uplift.extras.report.measures import mean_p95_max
-from uplift.lab.timing import commit, environment
+from uplift.lab.timing import commit, environment, stopwatch
 
 ROOT = Path(__file__).parents[1]
 DOCS = ROOT / "docs"
@@ -57,19 +57,21 @@ def measure(page: str, names: Iterable[str]) -> int:
             print(f"no '{name}' in {page}: {', '.join(known)}", file=sys.stderr)
             failures += 1
             continue
-        begin = time.perf_counter()
         try:
-            answer = known[name]()
-            values = to_jsonable_python(answer, fallback=lambda array: array.tolist())
+            answer, run = stopwatch(partial(answer_of, known[name]))
         except Exception:
             traceback.print_exc()
             print(f"{page}.{name}: failed", file=sys.stderr)
             failures += 1
         else:
-            seconds = time.perf_counter() - begin
-            store(page, name, values, seconds)
-            print(f"{page}.{name}: {seconds:.1f} s", file=sys.stderr)
+            store(page, name, answer, run.wall)
+            print(f"{page}.{name}: {run.wall:.1f} s", file=sys.stderr)
     return failures
+
+
+def answer_of(question: Callable[[], Any]) -> Any:
+    """Answer a question with values that JSON has."""
+    return to_jsonable_python(question(), fallback=lambda array: array.tolist())
 
 
 def stale(page: str) -> list[str]:
@@ -91,21 +93,20 @@ def read_answers(page: str) -> dict[str, Any]:
 
 def store(page: str, name: str, answer: Any, seconds: float) -> None:
     """Store the answers of a question next to those of the page's other questions."""
-    stored = read_answers(page)
+    answers = {**read_answers(page), name: answer}
     machine = environment()
-    measured = stored.get("measured", {})
-    measured[name] = {"commit": machine["commit"], "seconds": round(seconds, 1)}
-    known = [question for question in questions(page) if question in measured]
-    commits = dict.fromkeys(measured[question]["commit"] for question in known)
+    runs = answers.get("measured", {})
+    runs[name] = {"commit": machine["commit"], "seconds": round(seconds, 1)}
+    measured = {known: runs[known] for known in questions(page) if known in runs}
+    commits = dict.fromkeys(run["commit"] for run in measured.values())
     content = {
         "command": f"make measure PAGE={page}",
         "environment": {**machine, "commit": ", ".join(commits)},
-        "measured": {question: measured[question] for question in known},
+        "measured": measured,
     }
-    answers = {**stored, name: answer}
-    for question in known:
-        if answers.get(question) is not None:
-            content[question] = answers[question]
+    for known in measured:
+        if answers.get(known) is not None:
+            content[known] = answers[known]
     text = json.dumps(content, indent=1, ensure_ascii=False, allow_nan=False)
     write_text(text + "\n", DATA / f"{page}.json", force=True)
 
@@ -133,10 +134,9 @@ def with_printed(
     joined = []
     for row in rows:
         same = printed.get(tuple(str(row[key]) for key in keys))
-        added = {}
         for name, convert in columns.items():
-            added[f"thesis_{name}"] = same and convert(same[name])
-        joined.append(row | added)
+            row = {**row, f"thesis_{name}": same and convert(same[name])}
+        joined.append(row)
     return joined
 
 

@@ -15,7 +15,7 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 from benchmarks import ROOT, read_answers
-from uplift.lab.timing import ONE_THREAD, commit, commit_time
+from uplift.lab.timing import ONE_THREAD, commit_time
 
 CHILD = """
 import sys
@@ -36,8 +36,8 @@ UNTIMED = frozenset(
         "determinism",
         "fidelity",
         "film",
-        "grading",
         "install",
+        "looks",
         "meyer",
         "moments",
         "palette",
@@ -65,21 +65,6 @@ def age(page: str) -> float:
     """Return the time of the oldest commit of a page's answers, 0 if one is unknown."""
     runs = read_answers(page).get("measured", {}).values()
     return min((commit_time(run["commit"]) for run in runs), default=0)
-
-
-def estimate(known: Sequence[str]) -> str:
-    """Return how long the stale answers took when they were measured last."""
-    now = commit()
-    seconds = []
-    for page in known:
-        runs = read_answers(page).get("measured", {}).values()
-        seconds += [run["seconds"] for run in runs if run["commit"] != now]
-    timed = [value for value in seconds if value is not None]
-    unknown = len(seconds) - len(timed)
-    return (
-        f"{len(seconds)} answers are stale: they took {sum(timed) / 60:.0f} minutes"
-        + (f", and {unknown} an unknown time" if unknown else "")
-    )
 
 
 def run(page: str, names: Sequence[str]) -> bool:
@@ -127,8 +112,6 @@ def main(arguments: list[str]) -> int:
     if not jobs:
         print(*(f"{name:16}{line}" for name, line in known.items()), sep="\n")
         return 0
-    if arguments == ["all"]:
-        print(estimate(list(known)), file=sys.stderr)
     failed = run_all(jobs)
     if failed:
         print(f"failed: {', '.join(failed)}", file=sys.stderr)

@@ -2,9 +2,9 @@
 docs/guides/measuring.md.
 """
 
-from collections import defaultdict
 from collections.abc import Iterator
 from functools import partial
+from itertools import product
 
 import numpy as np
 
@@ -29,27 +29,18 @@ MATERIALS = 60
 COUNTS = (0, 3, 6, 12, 24)
 DRAWS = 2
 """Random choices of each kind."""
-ADVICE, PIXELS, COLOURS = ("advice", "random pixels", "random colours")
 
 
 def swatches() -> Iterator[Row]:
-    """Yield the mean error after measurements, and the expected one, over the scenes of
-    a set by choice.
+    """Yield the mean error of scenes after measurements, and the expected one, by
+    choice.
     """
-    for name in SETS:
-        errors = defaultdict(list)
-        for seed in range(SCENES):
-            for choice, count, error, expected in run_scene(
-                inside(spectra(name)), seed
-            ):
-                errors[choice, count].append((error, expected))
-        for (choice, count), values in errors.items():
-            delta_e, expected = np.mean(values, axis=0)
-            row = {"set": name, "choice": choice, "swatches": count}
-            yield row | {"delta_e": delta_e, "expected": expected}
+    for name, scene in product(SETS, range(SCENES)):
+        for row in run_scene(inside(spectra(name)), scene):
+            yield {"set": name, "scene": scene, **row}
 
 
-def run_scene(entries: Materials, seed: int) -> Iterator[tuple[str, int, float, float]]:
+def run_scene(entries: Materials, seed: int) -> Iterator[Row]:
     """Yield choices, numbers of swatches, and mean ΔE00 of a scene as found and as
     expected; the areas of its materials are exponential.
     """
@@ -74,17 +65,22 @@ def run_scene(entries: Materials, seed: int) -> Iterator[tuple[str, int, float, 
     first = build(np.zeros(0, dtype=int))
     at_first = uncertainty(first, PixelSample(rgb, areas), lights)
     chosen, _ = advise(at_first, COUNTS[-1])
-    orders = [(ADVICE, np.array([swatch.colour for swatch in chosen]))]
+    orders = [("advice", np.array([swatch.colour for swatch in chosen]))]
     draw = partial(rng.choice, len(hidden), COUNTS[-1], replace=False)
     for _ in range(DRAWS):
-        orders.append((PIXELS, draw(p=areas)))
-        orders.append((COLOURS, draw()))
+        orders.append(("random pixels", draw(p=areas)))
+        orders.append(("random colours", draw()))
     for choice, order in orders:
         for count in COUNTS:
             expected = at_first
             for swatch in order[:count]:
                 expected = expected.measured(int(swatch))
-            yield choice, count, error(build(order[:count])), expected.mean
+            yield {
+                "choice": choice,
+                "swatches": count,
+                "delta_e": error(build(order[:count])),
+                "expected": expected.mean,
+            }
 
 
 QUESTIONS = {"swatches": swatches}

@@ -9,7 +9,6 @@ window off.
 import json
 import tempfile
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from itertools import product
 from pathlib import Path
 from typing import Any
@@ -133,25 +132,16 @@ def chart_panel(title: str, exposure: Array, errors: Sequence[float] = ()) -> Pa
 # --- films of spektrafilm ---
 
 
-@dataclass(frozen=True, eq=False)
-class Stock:
-    """A film: sensitivities (N, 3) of its layers, without and with the window."""
-
-    name: str
-    plain: Array
-    windowed: Array
-
-
-def read_stocks() -> list[Stock]:
-    """Read the films that are balanced for the light."""
-    stocks = []
+def read_stocks() -> Iterator[tuple[str, Array, Array]]:
+    """Yield the names of the films that are balanced for the light, and sensitivities
+    (N, 3) of their layers without and with the window.
+    """
     power = film_power()[:, None]
     for path in sorted(PROGRAM.glob("profiles/*.json")):
         profile = json.loads(path.read_text(encoding="utf-8"))
-        about = profile["info"]
+        about, data = profile["info"], profile["data"]
         if about["stage"] != "filming" or about["reference_illuminant"] != FILM_LIGHT:
             continue
-        data = profile["data"]
         plain = np.nan_to_num(10 ** np.array(data["log_sensitivity"], dtype=float))
         rise, rise_width, fall, fall_width = data[
             "hanatos2025_adaptation_window_params"
@@ -160,8 +150,7 @@ def read_stocks() -> list[Stock]:
         windowed = plain * window[:, None]
         # white keeps its exposure
         windowed *= (power * plain).sum(axis=0) / (power * windowed).sum(axis=0)
-        stocks.append(Stock(about["name"], plain, windowed))
-    return stocks
+        yield about["name"], plain, windowed
 
 
 def measure_stocks() -> Iterator[Row]:
@@ -178,19 +167,18 @@ def measure_stocks() -> Iterator[Row]:
         "its table": film_table(cube)[1],
         "the program's table": np.load(PROGRAM_TABLE).astype(float),
     }
-    for stock in read_stocks():
-        truth = tested.measured * power @ stock.plain
-        by_cube = stops(lit @ stock.plain, truth).mean()
-        yield {"stock": stock.name, "table": "the cube", "stops": by_cube}
+    for stock, plain, windowed in read_stocks():
+        truth = tested.measured * power @ plain
+        by_cube = stops(lit @ plain, truth).mean()
+        yield {"stock": stock, "table": "the cube", "stops": by_cube}
         for (name, spectra), window in product(tables.items(), (False, True)):
-            table = spectra @ (stock.windowed if window else stock.plain)
+            table = spectra @ (windowed if window else plain)
             exposure = exposures(table, tested.rgb)
-            balance = power @ stock.plain / exposures(table, np.ones((1, 3)))
-            about = {"stock": stock.name, "table": name, "window": window}
-            plain = stops(exposure, truth).mean()
-            yield {**about, "stops": plain, "balanced": False}
-            balanced = stops(balance * exposure, truth).mean()
-            yield {**about, "stops": balanced, "balanced": True}
+            white = power @ plain / exposures(table, np.ones((1, 3)))
+            about = {"stock": stock, "table": name, "window": window}
+            for balanced, gain in ((False, 1.0), (True, white)):
+                error = stops(gain * exposure, truth).mean()
+                yield {**about, "stops": error, "balanced": balanced}
 
 
 QUESTIONS = {"chart": expose_chart, "stocks": measure_stocks}

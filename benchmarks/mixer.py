@@ -12,7 +12,7 @@ import numpy as np
 import uplift
 from benchmarks import DOCS, Row, summary
 from benchmarks.mixing import ARTISTS, DEFAULT, ways
-from benchmarks.mixtures import Mixtures, by_spectra, draw_ramps, ramp_between
+from benchmarks.mixtures import Mixtures, by_spectra, draw_ramps, of_pairs, ramp_between
 from benchmarks.programs import compile_c, numbers, program_version
 from uplift.common.arrays import Array
 from uplift.extras.colour.srgb import decode
@@ -96,9 +96,7 @@ def random_mixtures(cube: Cube) -> tuple[Mixtures, Array]:
     share = random.random(JUDGED)[kept]
     shares = np.stack([1 - share, share], axis=1)
     rgb = by_spectra(cube, dispersive(sensor))(pairs[kept], shares)
-    indices = np.arange(2 * len(share)).reshape(-1, 2)
-    paints = pairs[kept].reshape(-1, 3)
-    return Mixtures(paints, indices, shares, np.clip(rgb, 0, 1)), rgb
+    return of_pairs(pairs[kept], shares, np.clip(rgb, 0, 1)), rgb
 
 
 def errors() -> Iterator[Row]:

@@ -12,13 +12,10 @@ from benchmarks.mixtures import (
     MixRgb,
     by_spectra,
     draw_ramps,
-    linear,
     mean_of_codes,
     mixture_sets,
-    published,
     ramp_between,
 )
-from uplift.common.arrays import Array
 from uplift.extras.colour.srgb import hex_codes
 from uplift.extras.paint import dispersive
 from uplift.extras.paint.optics import average_areas
@@ -84,7 +81,7 @@ def greens() -> dict[str, str]:
 
 
 def pictures() -> None:
-    """Draw ramps from blue to yellow by theories, and by other tools."""
+    """Draw ramps from blue to yellow by theories."""
     # Parts are the thickness of filters and products, so that a ramp ends at its
     # colours.
     ramps = {
@@ -93,28 +90,6 @@ def pictures() -> None:
         if theory.name in DRAWN
     }
     draw_ramps(ramps, DOCS / "mixing" / "blue-yellow.png")
-    draw_ramps(tools(), DOCS / "mixing" / "tools.png")
-
-
-def tools() -> dict[str, Array]:
-    """Return the ramp of two artists' paints by RGB, by us, and by other tools."""
-    ours = ways(uplift.load())
-    mixes = {
-        "mean of sRGB codes": mean_of_codes,
-        "uplift mix --scattering root": ours["R^½"],
-        "uplift mix": ours[DEFAULT],
-    }
-    coloraide = published("coloraide").expected
-    mixbox = published("mixbox").expected[:1]
-    first, second = linear(*ARTISTS)
-    steps = len(coloraide) + 2
-    return {
-        **{title: ramp_between(*ARTISTS, mix, steps) for title, mix in mixes.items()},
-        "coloraide's spectral, after spectral.js (published)": np.array(
-            [first, *coloraide, second]
-        ),
-        "Mixbox 1:1 (published)": np.array([first, *mixbox, second]),
-    }
 
 
 QUESTIONS = {"mixtures": mixtures, "greens": greens, "pictures": pictures}

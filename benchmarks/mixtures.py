@@ -14,7 +14,7 @@ from benchmarks import read_reference
 from uplift.colorimetry import Sensor, delta_e_rgb
 from uplift.common.arrays import Array, Indices
 from uplift.extras.colour.srgb import decode, encode, parse_colour
-from uplift.extras.pages.plots import Strip, plot_strips
+from uplift.extras.pages.plots import plot_strips
 from uplift.extras.paint.coats import ramp
 from uplift.extras.paint.optics import average_areas
 from uplift.extras.paint.pigments import Pigment, Scattering, from_opaque
@@ -130,8 +130,13 @@ def published(tool: str) -> Mixtures:
     kept = [row for row in rows if row["tool"] == tool]
     paints = [linear(row["first"], row["second"]) for row in kept]
     expected = linear(*(row["mixture"] for row in kept))
-    pairs = np.arange(2 * len(kept)).reshape(-1, 2)
-    return Mixtures(np.concatenate(paints), pairs, _shares(kept), expected)
+    return of_pairs(np.array(paints), _shares(kept), expected)
+
+
+def of_pairs(colours: Array, shares: Array, expected: Array) -> Mixtures:
+    """Return mixtures of pairs (n, 2, 3) of linear RGB by their shares (n, 2)."""
+    pairs = np.arange(2 * len(colours)).reshape(-1, 2)
+    return Mixtures(colours.reshape(-1, 3), pairs, shares, expected)
 
 
 def linear(*codes: str) -> Array:
@@ -172,5 +177,5 @@ def ramp_between(first: str, second: str, mix: MixRgb, steps: int) -> Array:
 
 def draw_ramps(ramps: Mapping[str, Array], path: Path) -> None:
     """Write a strip for each ramp, linear sRGB (n, 3), by title."""
-    strips = [Strip(title, encode(rgb)) for title, rgb in ramps.items()]
+    strips = {title: encode(rgb) for title, rgb in ramps.items()}
     plot_strips(strips, path, force=True)

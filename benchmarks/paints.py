@@ -102,10 +102,10 @@ def opaque_samples(
 ) -> PaintSamples:
     """Return opaque samples of parts (n, P) of paints."""
     count = len(parts)
-    names = tuple(f"sample {number}" for number in range(count))
     shares = parts / parts.sum(axis=1, keepdims=True)
     opaque = np.full(count, np.inf)
     grounds = np.ones((count, len(NM)))
+    names = ("",) * count
     return PaintSamples(names, tuple(paints), shares, opaque, grounds, NM, measured)
 
 
@@ -127,13 +127,12 @@ def log_errors(paints: Paints, truth: Paints) -> Row:
     left out.
     """
     assert paints.errors is not None
-    ratios = [
-        paints.pigments.absorption / truth.pigments.absorption,
-        paints.pigments.scattering / truth.pigments.scattering,
-    ]
-    errors = np.log(ratios)
+    found, expected, spreads = (
+        np.stack([pigments.absorption, pigments.scattering])
+        for pigments in (paints.pigments, truth.pigments, paints.errors)
+    )
+    errors = np.log(found / expected)
     errors -= errors[1].mean(axis=0)
-    spreads = np.array([paints.errors.absorption, paints.errors.scattering])
     within = np.abs(errors) <= spreads
     return {"log_errors": np.sqrt((errors**2).mean()), "within": within.mean()}
 

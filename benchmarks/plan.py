@@ -3,12 +3,11 @@ docs/plan.md and its picture.
 """
 
 import json
-import shlex
 import shutil
 import tempfile
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from functools import cache, partial
+from functools import partial
 from pathlib import Path
 
 import uplift
@@ -59,34 +58,28 @@ CASES = (
 """The front of the first case is shown."""
 
 
-@cache
-def plan(case: Case) -> tuple[Row, float, int | None]:
-    """Return the plan of a scene, its CPU seconds, and the bytes of a cube, if any."""
-    with tempfile.TemporaryDirectory() as name:
-        folder = Path(name)
-        copy_samples(folder)
-        for source in (*(picture.path for picture in pictures()), MACBETH):
-            shutil.copy(source, folder)
-        (folder / "scene.toml").write_text(case.scene(), encoding="utf-8")
-        quick = "--quick" if case.quick else ""
-        run = call(folder, f"plan scene.toml {quick}")
-        found = json.loads((folder / "scene.plan.json").read_text(encoding="utf-8"))
-        size = None
-        if found["build"]:
-            call(folder, "build --plan scene.plan.json -o scene.uplift")
-            size = (folder / "scene.uplift").stat().st_size
-    return found, run, size
-
-
-def call(folder: Path, words: str) -> float:
-    """Run a command of this package; return its CPU seconds."""
-    return run_command([UPLIFT, *shlex.split(words)], folder=folder).cpu
-
-
 def plans() -> Iterator[Row]:
-    """Yield the chosen candidates, their errors and the cost of the search."""
+    """Yield the chosen candidates, their errors and the cost of the search; draw the
+    front of the first case.
+    """
     for case in CASES:
-        found, seconds, size = plan(case)
+        with tempfile.TemporaryDirectory() as name:
+            folder = Path(name)
+            copy_samples(folder)
+            for source in (*(picture.path for picture in pictures()), MACBETH):
+                shutil.copy(source, folder)
+            (folder / "scene.toml").write_text(case.scene(), encoding="utf-8")
+            plan = [UPLIFT, "plan", "scene.toml"] + ["--quick"] * case.quick
+            run = run_command(plan, folder=folder)
+            found = json.loads((folder / "scene.plan.json").read_text(encoding="utf-8"))
+            size = None
+            if found["build"]:
+                build = [UPLIFT, "build", "--plan", "scene.plan.json"]
+                build += ["-o", "scene.uplift"]
+                run_command(build, folder=folder)
+                size = (folder / "scene.uplift").stat().st_size
+        if case == CASES[0]:
+            draw_front(found)
         error = found["error"]
         yield {
             "textures": case.pictures,
@@ -100,13 +93,12 @@ def plans() -> Iterator[Row]:
             "bytes": size,
             "measured": found["search"]["measured"],
             "considered": found["search"]["considered"],
-            "cpu_s": seconds,
+            "cpu_s": run.cpu,
         }
 
 
-def front() -> None:
+def draw_front(found: Row) -> None:
     """Draw error over memory and over samples for the front of a plan."""
-    found, *_ = plan(CASES[0])
     axes = {
         "memory": Axis("cube file and pixels", log=True, text=format_size),
         "samples": Axis("samples per ray", log=True, text="{:g}".format),
@@ -155,4 +147,4 @@ def cost(build: Callable[[], Cube]) -> Row:
     }
 
 
-QUESTIONS = {"plans": plans, "front": front, "sparse": sparse}
+QUESTIONS = {"plans": plans, "sparse": sparse}

@@ -108,15 +108,14 @@ def mix_ramp(
 
 def plot_ramp(recipe: Recipe, mixture: Mixture, path: str, *, force: bool) -> None:
     from uplift.extras.colour.srgb import to_display_codes
-    from uplift.extras.pages.plots import Strip, plot_strips
+    from uplift.extras.pages.plots import plot_strips
 
     names = recipe.names
     codes = to_display_codes(mixture.rgb, recipe.cube.data.sensor) / 255
-    strips = [
-        Strip(f"{recipe.kind}: {recipe.title}", codes[:1]),
-        Strip(f"from {names[0]} to {names[-1]}", codes[1:]),
-    ]
-    plot_strips(strips[: len(names)], path, force=force)
+    strips = {f"{recipe.kind}: {recipe.title}": codes[:1]}
+    if len(names) > 1:
+        strips[f"from {names[0]} to {names[-1]}"] = codes[1:]
+    plot_strips(strips, path, force=force)
 
 
 def print_mixture_json(recipe: Recipe, mixture: Mixture, wavelengths: Array) -> None:

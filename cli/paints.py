@@ -284,16 +284,16 @@ def plot_recipes(
     import numpy as np
 
     from uplift.extras.colour.srgb import encode
-    from uplift.extras.pages.plots import Strip, plot_strips
+    from uplift.extras.pages.plots import plot_strips
 
     light = target.lights[0]
-    strips = []
+    strips = {}
     for recipe in recipes:
         pairs = zip(recipe.parts, recipe.paints, strict=True)
         title = " + ".join(f"{parts} {name}" for parts, name in pairs)
         spectra = np.stack([target.reflectance, recipe.reflectance])
         colours = _display(spectra @ light.xyz.T, light.white)
-        strips.append(Strip(f"{title}: ΔE00 {recipe.error:.2f}", encode(colours)))
+        strips[f"{title}: ΔE00 {recipe.error:.2f}"] = encode(colours)
     plot_strips(strips, path, force=force)
 
 

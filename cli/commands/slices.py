@@ -12,9 +12,10 @@ from ..outputs import check_outputs
 
 
 def _check_sheet(path: str) -> None:
-    from uplift.extras.pages.sheet import check_sheet
+    from uplift.extras.pages.figure import check_suffix
+    from uplift.extras.pages.sheet import FORMATS
 
-    check_sheet(path)
+    check_suffix(path, FORMATS)
 
 
 SHEET = options.OutputFile(_check_sheet)

@@ -4,11 +4,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from numpy.testing import assert_array_equal
 
 import uplift
 from uplift.extras.emission.discs import LampEntries
 from uplift.extras.emission.lookup import EmissionTable
-from uplift.extras.pages.chromaticity import ALL, errors_panel, lamp_window
+from uplift.extras.pages.chromaticity import ALL, PIXELS, errors_panel, lamp_window
 from uplift.extras.pages.panels import draw
 
 
@@ -21,11 +22,9 @@ def test_the_map_has_the_expected_errors(table):
     axes, _ = draw([errors_panel(table)]).axes
     (image,) = axes.images
     errors = image.get_array()
-    assert image.get_extent() == [*ALL.u, *ALL.v]
-    white = table.data.lattice.white
-    step = (ALL.u[1] - ALL.u[0]) / errors.shape[1]
-    row = errors.shape[0] - int((white[1] - ALL.v[0]) / step) - 1
-    column = int((white[0] - ALL.u[0]) / step)
+    assert_array_equal(image.get_extent(), ALL.ravel())
+    shares = (table.data.lattice.white - ALL[:, 0]) / np.ptp(ALL, axis=1)
+    column, row = (PIXELS * shares).astype(int)
     assert errors[row, column] == pytest.approx(
         float(table.expected_error([1.0, 1.0, 1.0])), rel=0.1
     )
@@ -40,7 +39,7 @@ def test_the_window_of_lamps_has_all_of_them(table, count):
         *(each[:count] for each in (entries.uv, entries.spectra, entries.radius)),
     )
     window = lamp_window(EmissionTable(replace(table.data, entries=some)))
-    low, high = np.array([window.u, window.v]).T
+    low, high = window.T
     assert (some.uv > low).all()
     assert (some.uv < high).all()
     width, height = high - low

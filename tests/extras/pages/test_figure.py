@@ -3,27 +3,18 @@
 import re
 from xml.etree import ElementTree
 
-import matplotlib
 import pytest
 from markupsafe import escape
 
 from uplift.common.text import printable
-from uplift.extras.pages.figure import (
-    STYLE,
-    figure_text,
-    new_figure,
-    style_axes,
-    to_svg,
-)
+from uplift.extras.pages.figure import to_svg
+from uplift.extras.pages.marks import line
+from uplift.extras.pages.panels import Dot, Panel, draw
 
 
 def drawn(value):
-    with matplotlib.rc_context(STYLE):
-        figure = new_figure(2, 1)
-        axes = figure.subplots()
-        axes.plot([0, value], marker="o")
-        style_axes(axes)
-        return to_svg(figure, 'a < "b"')
+    marks = [line([0, 1], [0, value], marker="o")]
+    return to_svg(draw([Panel(marks, dots=[Dot(1, 0, "text")])]), 'a < "b"')
 
 
 def test_equal_figures_have_equal_svg_and_others_share_no_identifier():
@@ -39,12 +30,7 @@ def test_equal_figures_have_equal_svg_and_others_share_no_identifier():
     "text", [r"$\frac{A$", "$$", r"a\$b", "_hidden", "a\x00\x1b[2Jb", "\ud800", "{$x$}"]
 )
 def test_text_of_files_is_drawn_as_it_is(text):
-    with matplotlib.rc_context(STYLE):
-        figure = new_figure(3, 2)
-        axes = figure.subplots()
-        axes.plot([0, 1], label=figure_text(text))
-        axes.set_title(figure_text(text))
-        axes.legend()
-        svg = to_svg(figure)
+    panel = Panel([line([0, 1], [0, 1], text)], text, legend="best")
+    svg = to_svg(draw([panel]))
     ElementTree.fromstring(svg)
     assert svg.count(str(escape(printable(text)))) >= 2  # title and legend

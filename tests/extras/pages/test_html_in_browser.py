@@ -5,8 +5,10 @@ no other one runs.
 import pytest
 
 from tests.browsing import check_page, open_page, shared_tab
-from uplift.extras.pages.figure import new_figure, to_page_svg
+from uplift.extras.pages.figure import to_page_svg
 from uplift.extras.pages.html import Markup, _environment, render
+from uplift.extras.pages.marks import line
+from uplift.extras.pages.panels import Panel, draw
 
 WIDE_TABLE = """{% extends "extras/pages/templates/base.html.j2" %}
 {% import "extras/pages/templates/macros.html.j2" as parts %}
@@ -18,8 +20,7 @@ WIDE_TABLE = """{% extends "extras/pages/templates/base.html.j2" %}
 
 
 def page(**values):
-    figure = new_figure(4, 2)
-    figure.subplots().plot([0, 1], color="#20509a")
+    figure = draw([Panel([line([0, 1], [0, 1], colour="#20509a")])])
     headings = [f"a long heading {row}" for row in range(12)]
     chart = to_page_svg(figure, "A line")
     template = _environment().from_string(WIDE_TABLE)

@@ -3,7 +3,6 @@ and expected errors.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -15,7 +14,7 @@ from uplift.extras.colour.srgb import to_display_codes
 from uplift.extras.emission.lattice import chromaticity, unit_xyz
 from uplift.extras.emission.lookup import EmissionTable
 from uplift.extras.pages.figure import GREY, INK, colour_map
-from uplift.extras.pages.marks import Mark, line
+from uplift.extras.pages.marks import Mark, line, outline, region
 from uplift.extras.pages.panels import Axis, Dot, Panel, draw, square_limits
 
 SIZE = (4.6, 4.4)
@@ -24,25 +23,16 @@ PIXELS = 320
 """Pixels of a picture along u′."""
 WAVELENGTHS = (460, 480, 490, 500, 510, 520, 540, 560, 580, 600, 620, 700)
 """Wavelengths in nm that are marked on the spectral locus."""
+OUTWARD = 0.022
+"""Distance in u′v′ of their names from the locus."""
 MAX_NAMES = 12
 """Lamps that are named; the report lists all."""
 FADED = 0.35
 """Opacity of colours below names."""
 MIN_EXTENT = 0.02
 """Smallest extent of the window of lamps in u′ or v′."""
-
-
-@dataclass(frozen=True)
-class Window:
-    """A part of the diagram: lowest and highest u′ and v′."""
-
-    u: tuple[float, float]
-    v: tuple[float, float]
-
-
-ALL = Window(
-    (-0.03, 0.65), (-0.03, 0.65)
-)  # all chromaticities of lights, with a margin
+ALL = np.array([(-0.03, 0.65), (-0.03, 0.65)])
+"""Limits of u′ and v′ around all chromaticities of lights."""
 
 
 def light_figure(table: EmissionTable) -> Any:
@@ -84,16 +74,21 @@ def lamps_panel(table: EmissionTable) -> Panel:
     """
     entries = table.data.entries
     window = lamp_window(table)
+    turn = np.linspace(0, 2 * np.pi, 65)
+    circle = np.stack([np.cos(turn), np.sin(turn)], axis=1)
+    marks = []
+    for uv, radius in zip(entries.uv, entries.radius, strict=True):
+        marks.append(outline(uv + radius * circle, colour=GREY, linewidth=0.5))
+    marks.append(_map(table, window, _codes(table, window), alpha=FADED))
     is_standard = np.isin(entries.names, STANDARD_ILLUMINANTS)
     order = np.lexsort([-entries.radius, ~is_standard])
-    marks = [_map(table, window, _codes(table, window), alpha=FADED), _discs(table)]
     title = "Exact lamps, and the discs in which answers blend to them"
     return _panel(table, window, title, marks, order[:MAX_NAMES].tolist())
 
 
 def _panel(
     table: EmissionTable,
-    window: Window,
+    window: Array,
     title: str,
     marks: Sequence[Mark],
     named: Sequence[int] = (),
@@ -105,35 +100,34 @@ def _panel(
         text = name if row in named else ""
         is_bold = name in STANDARD_ILLUMINANTS
         dots.append(Dot(u, v, text, INK, hollow=True, bold=is_bold, size=0.6))
-    x = Axis("u′", limits=window.u)
-    return Panel(marks, title, x, Axis("v′", limits=window.v), dots, "lower right")
-
-
-def lamp_window(table: EmissionTable) -> Window:
-    """Return the part of the diagram that has the lamps and white."""
-    uv = np.append(table.data.entries.uv, table.data.lattice.white[None], axis=0)
-    u, v = square_limits(uv, MIN_EXTENT).tolist()
-    return Window(tuple(u), tuple(v))
-
-
-def _pixels(table: EmissionTable, window: Window) -> Array:
-    """Linear RGB (H, W, 3) of luminance 1 at the pixels of a window, v′ upwards;
-    outside the locus that of its edge.
-    """
-    step = (window.u[1] - window.u[0]) / PIXELS
-    u, v = (
-        low + step * (np.arange(round((high - low) / step)) + 0.5)
-        for low, high in (window.u, window.v)
+    x, y = (
+        Axis(label, limits=tuple(limits))
+        for label, limits in zip(("u′", "v′"), window, strict=True)
     )
+    return Panel(marks, title, x, y, dots, "lower right")
+
+
+def lamp_window(table: EmissionTable) -> Array:
+    """Return the limits (2, 2) of u′ and v′ around the lamps and white."""
+    uv = np.append(table.data.entries.uv, table.data.lattice.white[None], axis=0)
+    return square_limits(uv, MIN_EXTENT)
+
+
+def _pixels(table: EmissionTable, window: Array) -> Array:
+    """Linear RGB (P, P, 3) of luminance 1 at the pixels of a window; outside the locus
+    that of its edge.
+    """
     lattice = table.data.lattice
-    offset = np.stack(np.meshgrid(u, v[::-1]), axis=-1) - lattice.white
+    middles = (np.arange(PIXELS) + 0.5) / PIXELS
+    u, v = window[:, :1] + np.diff(window) * middles
+    offset = np.stack(np.meshgrid(u, v), axis=-1) - lattice.white
     length = lattice.polar(offset.reshape(-1, 2))[2].reshape(offset.shape[:2])
     xyz = unit_xyz(lattice.white + offset / np.maximum(length, 1.0)[..., None])
     return table.rgb_of_xyz(xyz / xyz[..., 1:2])
 
 
-def _codes(table: EmissionTable, window: Window) -> NDArray[np.uint8]:
-    """Encoded sRGB (H, W, 3) of the brightest colours of the chromaticities in a
+def _codes(table: EmissionTable, window: Array) -> NDArray[np.uint8]:
+    """Encoded sRGB (P, P, 3) of the brightest colours of the chromaticities in a
     window.
     """
     rgb = _pixels(table, window)
@@ -142,57 +136,24 @@ def _codes(table: EmissionTable, window: Window) -> NDArray[np.uint8]:
 
 
 def _map(
-    table: EmissionTable, window: Window, values: NDArray[Any], **style: Any
+    table: EmissionTable, window: Array, values: NDArray[Any], **style: Any
 ) -> Mark:
-    """Draw values (H, W) or codes (H, W, 3) of a window within the spectral locus."""
-    extent = (*window.u, *window.v)
-    place: dict[str, Any] = {"extent": extent, "zorder": 0, "aspect": "equal"}
-
-    def draw_map(axes: Any) -> None:
-        edge = {"facecolor": "none", "edgecolor": GREY, "linewidth": 1}
-        (locus,) = axes.fill(*table.data.lattice.knots.T, **edge)
-        image = axes.imshow(values, interpolation="bilinear", **place, **style)
-        image.set_clip_path(locus)
-        axes.grid(visible=False)
-
-    return draw_map
-
-
-def _discs(table: EmissionTable) -> Mark:
-    """Draw the disc of each lamp."""
-
-    def draw_discs(axes: Any) -> None:
-        from matplotlib.patches import Circle
-
-        entries = table.data.entries
-        style: dict[str, Any] = {"fill": False, "edgecolor": GREY, "linewidth": 0.5}
-        for uv, radius in zip(entries.uv, entries.radius, strict=True):
-            axes.add_patch(Circle(tuple(uv), radius, **style))
-
-    return draw_discs
+    """Draw values (P, P) or codes (P, P, 3) of a window within the spectral locus."""
+    locus = table.data.lattice.knots
+    return region(values, window, locus, GREY, interpolation="bilinear", **style)
 
 
 def _wavelengths(table: EmissionTable) -> Mark:
     """Name wavelengths outside the locus, away from white."""
     is_marked = np.isin(table.wavelengths, WAVELENGTHS)
-    places = _locus(table)[is_marked]
-    names = [f"{at:.0f}" for at in table.wavelengths[is_marked]]
+    places = chromaticity(table.data.cmfs[is_marked])
     outward = places - table.data.lattice.white
-    outward /= np.linalg.norm(outward, axis=1, keepdims=True)
-    middle: dict[str, Any] = {"ha": "center", "va": "center"}
+    outward *= OUTWARD / np.linalg.norm(outward, axis=1, keepdims=True)
 
     def draw_names(axes: Any) -> None:
         axes.plot(*places.T, "o", markersize=2, color=GREY)
-        for name, uv, away in zip(names, places, 9 * outward, strict=True):
-            axes.annotate(name, uv, away, textcoords="offset points", **middle)
+        names = table.wavelengths[is_marked]
+        for name, uv in zip(names, places + outward, strict=True):
+            axes.text(*uv, f"{name:.0f}", ha="center", va="center")
 
     return draw_names
-
-
-def _locus(table: EmissionTable) -> Array:
-    """u′v′ (N, 2) of single wavelengths; that of white where the observer does not
-    respond.
-    """
-    responds = table.data.cmfs.sum(axis=1) > 0
-    xyz = np.where(responds[:, None], table.data.cmfs, table.rgb_to_xyz.sum(axis=1))
-    return chromaticity(xyz)

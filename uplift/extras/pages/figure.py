@@ -8,13 +8,13 @@ import os
 import re
 from collections.abc import Sequence
 from contextlib import AbstractContextManager
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 from markupsafe import Markup, escape
 from numpy.typing import NDArray
 
-from uplift.common.arrays import Array
+from uplift.common.arrays import Array, StrPath
 from uplift.common.errors import OutputError, needs_package
 from uplift.common.files import atomic_write
 from uplift.common.text import printable
@@ -78,7 +78,7 @@ def matplotlib() -> Any:
     installed.
     """
     with needs_package("figures", OutputError):
-        import matplotlib
+        import matplotlib.figure
         import textalloc  # noqa: F401
     return matplotlib
 
@@ -99,18 +99,6 @@ def figure_text(text: str) -> str:
     return f"{HAIR_SPACE}{shown}" if shown.startswith("_") else shown
 
 
-def new_figure(
-    width: float, height: float, layout: Literal["constrained"] | None = "constrained"
-) -> Any:
-    """Create an empty figure without a window. Raises `OutputError` without
-    matplotlib.
-    """
-    matplotlib()
-    from matplotlib.figure import Figure
-
-    return Figure(figsize=(width, height), layout=layout)
-
-
 def style_axes(axes: Any) -> None:
     """Remove the frame above and on the right, and draw a grid behind the data."""
     axes.grid(color=PALE, linewidth=0.5)
@@ -118,25 +106,22 @@ def style_axes(axes: Any) -> None:
     axes.spines[["top", "right"]].set_visible(False)
 
 
-def check_suffix(path: str | os.PathLike[str]) -> str:
+def check_suffix(path: StrPath, suffixes: Sequence[str] = SUFFIXES) -> str:
     """Return the format of a figure's file, by its suffix. Raises `OutputError`, also
     without matplotlib.
     """
     suffix = os.path.splitext(path)[1].lower()
-    if suffix not in SUFFIXES:
+    if suffix not in suffixes:
         problem = (
-            f"the suffix of a plot must be one of {', '.join(SUFFIXES)}, got '{suffix}'"
+            f"the suffix of a plot must be one of {', '.join(suffixes)}, got '{suffix}'"
         )
-        raise OutputError(
-            problem, path=path, hint="name the file accordingly, such as plot.svg"
-        )
+        hint = f"name the file accordingly, such as plot{suffixes[0]}"
+        raise OutputError(problem, path=path, hint=hint)
     matplotlib()
     return suffix
 
 
-def write_figure(
-    figure: Any, path: str | os.PathLike[str], *, force: bool = False
-) -> None:
+def write_figure(figure: Any, path: StrPath, *, force: bool = False) -> None:
     """Write a figure as PNG, SVG or PDF, by the suffix of its file. Equal figures give
     equal files.
     """

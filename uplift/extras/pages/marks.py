@@ -6,7 +6,6 @@ does not name are properties of matplotlib's artists.
 """
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from typing import Any, Literal
 
 import numpy as np
@@ -121,30 +120,19 @@ def histogram(counts: ArrayLike, edges: ArrayLike, colour: str = ACCENT) -> Mark
     return draw
 
 
-@dataclass(frozen=True)
-class Box:
-    """Quantiles of a distribution: the ends, the quartiles and the median."""
-
-    low: float
-    first: float
-    median: float
-    third: float
-    high: float
-    colour: str = INK
-
-
-def boxes(rows: Sequence[Box]) -> Mark:
-    """Draw distributions below one another at y = 0, 1, …"""
+def boxes(quantiles: Sequence[Sequence[float]], colours: Sequence[str]) -> Mark:
+    """Draw distributions below one another at y = 0, 1, … by their lower ends,
+    quartiles, medians, quartiles and upper ends (n, 5).
+    """
 
     def draw(axes: Any) -> None:
         style_axes(axes)
         axes.yaxis.grid(visible=False)
-        for row, box in enumerate(rows):
-            ends = row - 0.31, row + 0.31
-            width = box.third - box.first
-            axes.hlines(row, box.low, box.high, color=box.colour, linewidth=1)
-            axes.barh(row, width, left=box.first, height=0.62, color=box.colour)
-            axes.vlines(box.median, *ends, color="white", linewidth=1.4)
+        for row, (values, colour) in enumerate(zip(quantiles, colours, strict=True)):
+            low, first, median, third, high = values
+            axes.hlines(row, low, high, color=colour, linewidth=1)
+            axes.barh(row, third - first, left=first, height=0.62, color=colour)
+            axes.vlines(median, row - 0.31, row + 0.31, color="white", linewidth=1.4)
 
     return draw
 
@@ -187,6 +175,38 @@ def picture(codes: NDArray[Any], **options: Any) -> Mark:
     def draw(axes: Any) -> None:
         _remove_frame(axes)
         axes.imshow(codes, **{"interpolation": "nearest", **options})
+
+    return draw
+
+
+def patches(codes: NDArray[Any]) -> Mark:
+    """Draw colours (H, W, 3) as even patches that fill the panel, with an edge, so that
+    white is visible on white.
+    """
+
+    def draw(axes: Any) -> None:
+        picture(codes, aspect="auto")(axes)
+        axes.spines[:].set(visible=True, color=PALE, linewidth=0.6)
+
+    return draw
+
+
+def region(
+    values: NDArray[Any],
+    limits: Array,
+    corners: ArrayLike,
+    edge: str = "none",
+    **style: Any,
+) -> Mark:
+    """Draw values (H, W) or colours (H, W, 3), the first row at the bottom, over limits
+    (2, 2) of x and y, within corners (n, 2).
+    """
+
+    def draw(axes: Any) -> None:
+        (border,) = axes.fill(*np.transpose(corners), facecolor="none", edgecolor=edge)
+        place: dict[str, Any] = {"extent": limits.ravel(), "origin": "lower"}
+        image = axes.imshow(values, zorder=0.6, **place, **style)
+        image.set_clip_path(border)
 
     return draw
 

@@ -16,7 +16,7 @@ from uplift.extras.pages.dots import Dot, draw_dot, write_labels
 from uplift.extras.pages.figure import (
     INK,
     figure_text,
-    new_figure,
+    matplotlib,
     style_axes,
     styled,
     to_page_svg,
@@ -40,6 +40,9 @@ MARGIN = 0.06
 """Space around dots and regions, as a share of their extent."""
 TEXT_HEIGHT = 0.19
 """Inches of a line of text above or below a picture."""
+ENTRY = 0.5
+LETTER = 0.06
+"""Inches of an entry of a legend without its text, and of a letter."""
 LEGEND: dict[str, Any] = {"frameon": False, "fontsize": 8}
 
 
@@ -100,10 +103,10 @@ def draw(
         ``"x"``, ``"y"`` or ``"xy"``: axes that have the same limits in all panels.
     """
     rows = math.ceil(len(panels) / columns)
-    width, height = (size, 1.0) if isinstance(size, float | int) else size
+    width, height = size if isinstance(size, tuple) else (size, 1.0)
     with styled():
-        figure = new_figure(columns * width, rows * height)
-        figure.set_dpi(dpi)
+        extent = columns * width, rows * height
+        figure = matplotlib().figure.Figure(extent, dpi, layout="constrained")
         cells = figure.subplots(
             rows, columns, squeeze=False, sharex="x" in share, sharey="y" in share
         )
@@ -113,23 +116,24 @@ def draw(
                 axes.set_axis_off()
             else:
                 drawn.append((axes, panel))
-        for axes, panel in drawn:
-            _draw_panel(axes, panel)
+                _draw_panel(axes, panel)
         for axes, panel in drawn:
             _set_axis(axes.xaxis, panel.x)
             _set_axis(axes.yaxis, panel.y)
         if "x" in share:
-            _remove_labels(cells[:-1], "x")
+            for axes in cells[:-1].flat:
+                axes.set_xlabel("")
         if "y" in share:
-            _remove_labels(cells[:, 1:], "y")
-        if isinstance(size, float | int):
+            for axes in cells[:, 1:].flat:
+                axes.set_ylabel("")
+        if not isinstance(size, tuple):
             _fit_heights(figure, cells, width)
         if scale is not None:
             _add_scales(figure, cells, scale)
         if title:
             figure.suptitle(figure_text(title), fontsize=9, color=INK)
         if legend:
-            _add_legend(figure, cells, legend, columns)
+            _add_legend(figure, cells, legend)
         _fix_layout(figure)
         for axes, panel in drawn:
             write_labels(axes, panel.dots)
@@ -153,12 +157,6 @@ def sheet(titles: Sequence[str], rows: Mapping[str, Sequence[Panel]]) -> list[Pa
                 panel = replace(panel, y=Axis(name))
             panels.append(panel)
     return panels
-
-
-def _remove_labels(cells: Any, name: str) -> None:
-    """Remove the labels of axes that have the limits of others."""
-    for axes in cells.flat:
-        axes.set(**{f"{name}label": ""})
 
 
 def _draw_panel(axes: Any, panel: Panel) -> None:
@@ -235,23 +233,25 @@ def _add_scales(figure: Any, cells: Any, label: str) -> None:
     maps = []
     for axes in cells.flat:
         maps += [image for image in axes.images if image.get_array().ndim == 2]
-    scales = {(type(image.norm), *image.get_clim()) for image in maps}
-    places = {maps[0]: list(cells[:, -1])} if len(scales) == 1 else {}
-    for image in maps if len(scales) > 1 else ():
-        places[image] = image.axes
+    places = {image: image.axes for image in maps}
+    if len({(type(image.norm), *image.get_clim()) for image in maps}) == 1:
+        places = {maps[0]: list(cells[:, -1])}
     for image, axes in places.items():
         bar = figure.colorbar(image, ax=axes, fraction=0.05, pad=0.02, extend="max")
         bar.set_label(label, color=INK)
         bar.outline.set_visible(False)
 
 
-def _add_legend(figure: Any, cells: Any, place: str, columns: int) -> None:
+def _add_legend(figure: Any, cells: Any, place: str) -> None:
+    """Add the labels of all panels in as few lines of even length as they need."""
     handles: dict[str, Any] = {}
     for axes in cells.flat:
         for handle, label in zip(*axes.get_legend_handles_labels(), strict=True):
             handles.setdefault(label, handle)
     side = {"above": "outside upper center", "below": "outside lower center"}[place]
-    count = min(len(handles), max(2 * columns, 4))
+    entry = ENTRY + LETTER * max(map(len, handles), default=0)
+    lines = math.ceil(len(handles) * entry / figure.get_figwidth())
+    count = math.ceil(len(handles) / max(lines, 1))
     figure.legend(handles.values(), handles, loc=side, ncols=count, **LEGEND)
 
 

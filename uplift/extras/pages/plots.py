@@ -2,8 +2,8 @@
 metamers in a* and b*.
 """
 
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from itertools import zip_longest
 from typing import Any
 
@@ -17,8 +17,8 @@ from uplift.extras.colour.query import QueryResult
 from uplift.extras.colour.srgb import to_display_codes
 from uplift.extras.looks.lab_errors import LIKELY
 from uplift.extras.looks.metamer_bounds import Bounds
-from uplift.extras.pages.figure import ACCENT, INK, PALE, write_figure
-from uplift.extras.pages.marks import Mark, line, outline, picture
+from uplift.extras.pages.figure import ACCENT, INK, write_figure
+from uplift.extras.pages.marks import line, outline, patches, region
 from uplift.extras.pages.panels import (
     Axis,
     Dot,
@@ -33,20 +33,21 @@ SIZE = (7.2, 4.0)
 """Inches of a plot of curves."""
 MAX_LEGEND = 12
 """Largest number of curves with a legend."""
+Curve = tuple[Array, Array, Array, str]
+"""Wavelengths (N,), values (N,), 8-bit codes (3,) of the colour, and its name."""
 
 
 def plot_spectra(
     cube: Cube, results: Sequence[QueryResult], path: StrPath, *, force: bool = False
 ) -> None:
     """Plot reflectances over wavelength as PNG, SVG or PDF, each in its own colour."""
-    marks = []
+    curves = []
     for result in results:
         code = cube.encode(result.rgb).round().astype(np.uint8)
         label = result.entry or f"#{code.tobytes().hex()}"
         colour = to_display_codes(result.rgb, cube.data.sensor)
-        marks += _curve(result.wavelengths, result.reflectance, colour, label)
-    panel = replace(spectra_panel(marks), legend=_legend(len(results)))
-    write_figure(draw([panel], size=SIZE), path, force=force)
+        curves.append((result.wavelengths, result.reflectance, colour, label))
+    _write_curves(curves, spectra_panel([]), path, force=force)
 
 
 def plot_lights(
@@ -59,50 +60,37 @@ def plot_lights(
     """Plot spectral powers over wavelength as PNG, SVG or PDF, each in its
     own colour.
     """
-    marks = []
+    curves = []
     for rgb, wavelengths, power in lights:
         brightest = np.clip(rgb / max(rgb.max(), 1e-300), 0, 1)
         label = " ".join(f"{value:.4g}" for value in rgb)
-        marks += _curve(wavelengths, power, to_display_codes(brightest, gamut), label)
-    power_axis = Axis("power", limits=(0, None))
-    legend = _legend(len(lights))
-    panel = Panel(marks, "", Axis("wavelength / nm"), power_axis, legend=legend)
-    write_figure(draw([panel], size=SIZE), path, force=force)
+        curves.append((wavelengths, power, to_display_codes(brightest, gamut), label))
+    panel = Panel(x=Axis("wavelength / nm"), y=Axis("power", limits=(0, None)))
+    _write_curves(curves, panel, path, force=force)
 
 
-def _legend(count: int) -> str:
-    return "best" if count <= MAX_LEGEND else ""
+def _write_curves(
+    curves: Sequence[Curve], panel: Panel, path: StrPath, *, force: bool
+) -> None:
+    """Write curves in their colours, with dark edges; few ones have a legend."""
+    marks = []
+    for wavelengths, values, code, label in curves:
+        edge: dict[str, Any] = {"linewidth": 3.4, "solid_capstyle": "round"}
+        marks.append(line(wavelengths, values, "", "0.25", **edge))
+        marks.append(line(wavelengths, values, label, tuple(code / 255), linewidth=2.4))
+    legend = "best" if len(curves) <= MAX_LEGEND else ""
+    drawn = replace(panel, marks=marks, legend=legend)
+    write_figure(draw([drawn], size=SIZE), path, force=force)
 
 
-def _curve(wavelengths: Array, values: Array, code: Array, label: str) -> list[Mark]:
-    """Draw a curve in its colour, with a dark edge."""
-    style: dict[str, Any] = {"solid_capstyle": "round"}
-    return [
-        line(wavelengths, values, "", "0.25", linewidth=3.4, **style),
-        line(wavelengths, values, label, tuple(code / 255), linewidth=2.4, **style),
-    ]
-
-
-@dataclass(frozen=True, eq=False)
-class Strip:
-    """Encoded colours (k, 3) in [0, 1] under a title."""
-
-    title: str
-    codes: Array
-
-
-def plot_strips(strips: Sequence[Strip], path: StrPath, *, force: bool = False) -> None:
-    """Plot strips of colour below one another as PNG, SVG or PDF."""
-    panels = []
-    for strip in strips:
-        marks = [picture(strip.codes[None], aspect="auto"), _frame]
-        panels.append(Panel(marks, strip.title))
+def plot_strips(
+    strips: Mapping[str, Array], path: StrPath, *, force: bool = False
+) -> None:
+    """Plot strips of encoded colours (k, 3) in [0, 1] below one another, by title, as
+    PNG, SVG or PDF.
+    """
+    panels = [Panel([patches(codes[None])], title) for title, codes in strips.items()]
     write_figure(draw(panels, size=(7.2, 0.86)), path, force=force)
-
-
-def _frame(axes: Any) -> None:
-    """Draw an edge, so that white is visible on white."""
-    axes.spines[:].set(visible=True, color=PALE, linewidth=0.6)
 
 
 MAX_COLOURS = 24
@@ -145,13 +133,16 @@ def _region_panel(
     """Return the colours that one colour may have under a light, and its answer; also a
     ``part`` of them.
     """
-    region = bounds.outline(row)
+    edge = bounds.outline(row)
     inner = bounds if part is None else part
     lightness, a, b = inner.lab[row]
     likely = inner.likely(row)
-    marks = [_filled(screen, region, lightness)]
-    marks.append(outline(region, "all reflectances", INK))
-    inside = [region, np.array([(a, b)])]
+    extent = square_limits(edge, MIN_EXTENT)
+    marks = [
+        region(_colours(screen, extent, lightness), extent, edge),
+        outline(edge, "all reflectances", INK),
+    ]
+    inside = [edge, np.array([(a, b)])]
     if likely is not None:
         inside.append(likely)
         marks.append(outline(likely, f"likely {LIKELY:.0%}", ACCENT, linewidth=1.4))
@@ -165,24 +156,12 @@ def _region_panel(
     return Panel(marks, title, x, Axis("b*", limits=tuple(v)), [Dot(a, b)])
 
 
-def _filled(screen: Sensor, region: Array, lightness: float) -> Mark:
-    """Fill a region with its colours on a screen."""
-    extent = square_limits(region, MIN_EXTENT)
-
-    def draw_colours(axes: Any) -> None:
-        codes = _colours(screen, extent, lightness)
-        image = axes.imshow(codes, extent=extent.ravel(), origin="lower", zorder=0.5)
-        (edge,) = axes.fill(*region.T, facecolor="none")
-        image.set_clip_path(edge)
-
-    return draw_colours
-
-
 def _colours(screen: Sensor, extent: Array, lightness: float) -> Array:
     """Colours (P, P, 3) on a screen of one lightness over a* and b*; those outside its
     gamut are desaturated.
     """
-    a, b = (np.linspace(low, high, PIXELS) for low, high in extent.tolist())
-    lab = np.stack(np.broadcast_arrays(lightness, a[None, :], b[:, None]), axis=-1)
-    linear = lab_to_xyz(lab.reshape(-1, 3), screen.light.white) @ screen.xyz_to_rgb.T
-    return to_display_codes(linear, SRGB).reshape(PIXELS, PIXELS, 3) / 255
+    a, b = np.meshgrid(*(np.linspace(low, high, PIXELS) for low, high in extent))
+    lab = np.stack([np.full_like(a, lightness), a, b], axis=-1)
+    xyz = lab_to_xyz(lab.reshape(-1, 3), screen.light.white)
+    codes = to_display_codes(xyz @ screen.xyz_to_rgb.T, SRGB) / 255
+    return codes.reshape(lab.shape)

@@ -4,25 +4,23 @@ Status colours differ by at least 16 ΔE00 for protanopes, deuteranopes and trit
 (Machado et al. 2009), and the frequent regular nodes are inconspicuous.
 """
 
-import io
 import math
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from uplift.common.arrays import Array, StrPath
-from uplift.common.errors import OutputError
 from uplift.common.files import check_output
 from uplift.common.text import pluralise
 from uplift.cube import CubeData
 from uplift.extras.colour.srgb import decode, encode
 from uplift.extras.images import exr
-from uplift.extras.pages.figure import HIGHLIGHT, matplotlib, render, write_figure
+from uplift.extras.pages.figure import HIGHLIGHT, check_suffix, matplotlib, write_figure
 from uplift.extras.pages.marks import error_map, line, picture
 from uplift.extras.pages.panels import Axis, Panel, draw
 
+FORMATS = (".exr", ".png")
 WIDTH = 5.0
 """Inches of a panel."""
 DPI = 130
@@ -39,29 +37,19 @@ def write_sheet(data: CubeData, path: StrPath, *, force: bool = False) -> None:
     Panels show lattice RGB, fitting distance, status, and, of cubes that store them,
     standard error and round.
     """
-    check_sheet(path)
+    suffix = check_suffix(path, FORMATS)
     check_output(path, force=force)
     exr.check_slices(data)
     figure = draw_sheet(data)
-    if Path(path).suffix.lower() == ".png":
+    if suffix == ".png":
         write_figure(figure, path, force=force)
         return
-    from matplotlib.image import imread
-
-    codes = imread(io.BytesIO(render(figure, ".png")))[..., :3]
-    image = decode(codes).astype(np.float32)
+    figure.canvas.draw()
+    codes = np.asarray(figure.canvas.buffer_rgba())[..., :3]
+    image = decode(codes / 255).astype(np.float32)
     channels = {letter: image[..., i] for i, letter in enumerate("RGB")}
     part = exr.make_part("sheet", exr.attributes(data), channels)
     exr.write_parts([part], path, force=force)
-
-
-def check_sheet(path: StrPath) -> None:
-    """Check the suffix of a contact sheet, which needs matplotlib."""
-    if Path(path).suffix.lower() not in (".exr", ".png"):
-        problem = "the name of a sheet must end in .exr or .png"
-        hint = "name the file .exr or .png"
-        raise OutputError(problem, path=path, hint=hint)
-    matplotlib()
 
 
 def draw_sheet(data: CubeData) -> Any:
@@ -126,11 +114,8 @@ def _distance_panel(data: CubeData) -> Panel:
 
 
 def _status_panel(data: CubeData) -> Panel:
-    codes = np.array([list(bytes.fromhex(colour[1:])) for colour in STATUS]) / 255
-    white = np.ones((1, 3))
-    marks = [
-        picture(_colours(data, np.append(codes, white, axis=0)[data.points.status]))
-    ]
+    codes = matplotlib().colors.to_rgba_array([*STATUS, "white"])[:, :3]
+    marks = [picture(_colours(data, codes[data.points.status]))]
     for colour, (label, count) in zip(
         STATUS, data.points.counts().items(), strict=False
     ):

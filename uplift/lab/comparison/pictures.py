@@ -11,7 +11,7 @@ from uplift.common.arrays import StrPath
 from uplift.extras.pages.figure import OTHER, write_figure
 from uplift.extras.pages.format import capitalise, format_error, format_time
 from uplift.extras.pages.html import Tooltip, render
-from uplift.extras.pages.marks import Box, boxes, line, threshold
+from uplift.extras.pages.marks import boxes, line, threshold
 from uplift.extras.pages.panels import Axis, Dot, Panel, draw, page_svg
 from uplift.extras.pages.pareto import family_colours, front_panel
 from uplift.lab.comparison.compare import HEADINGS, Comparison
@@ -91,16 +91,17 @@ def box_panels(comparison: Comparison) -> list[Panel]:
     visible = threshold(JUST_VISIBLE, axis="x")
     panels = []
     for name, title in comparison.sets.items():
-        drawn = []
         rows = comparison.of(name)
+        quantiles = []
         for row in rows:
             low = max(row["q2_5"], MIN_ERROR)
             quartiles = row["q25"], row["median"], row["q75"]
-            colour = COLOURS.get(row["family"], OTHER)
-            drawn.append(Box(low, *quartiles, row["q97_5"], colour))
+            quantiles.append((low, *quartiles, row["q97_5"]))
+        colours = [COLOURS.get(row["family"], OTHER) for row in rows]
         y = Axis(names=[row["representation"] for row in rows])
         x = Axis("ΔE00", log=True)
-        panels.append(Panel([boxes(drawn), visible], capitalise(title), x, y))
+        marks = [boxes(quantiles, colours), visible]
+        panels.append(Panel(marks, capitalise(title), x, y))
     return panels
 
 
