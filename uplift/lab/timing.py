@@ -15,12 +15,9 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from importlib import metadata
 from pathlib import Path
-from typing import TYPE_CHECKING, TypeVar
+from typing import TypeVar
 
 from uplift.common.version import version
-
-if TYPE_CHECKING:
-    from uplift.common.arrays import Values
 
 PACKAGES = ("numpy", "scipy", "jax", "colour-science", "safetensors")
 ONE_THREAD = {
@@ -183,18 +180,6 @@ def time_command(
     """Time a process several times."""
     timed = (run_command(command, variables=variables) for _ in range(runs))
     return Timing(tuple(timed))
-
-
-def check_answer(answer: "Values", expected: "Values", tolerance: float) -> float:
-    """Return the largest difference of an answer; raise `RuntimeError` if it exceeds
-    the tolerance or is not a number, as there is nothing to time then.
-    """
-    worst = float(abs(answer - expected).max())
-    if not worst <= tolerance:
-        raise RuntimeError(
-            f"wrong answer, not timed: differs by {worst:g}, more than {tolerance:g}"
-        )
-    return worst
 
 
 def environment() -> dict[str, str]:
