@@ -22,9 +22,7 @@ from benchmarks import DOCS, ROOT, Row
 from benchmarks.checker import LAYOUT, chart, chart_panel
 from benchmarks.materials import materials
 from uplift.colorimetry.observer import (
-    DEFAULT_OBSERVER,
     grid,
-    illuminant_spd,
     light,
     matching_functions,
     sensor,
@@ -35,6 +33,7 @@ from uplift.extras.export.film import CAT16, LAYER_WIDTH, LAYERS
 from uplift.extras.pages.figure import write_figure
 from uplift.extras.pages.marks import Mark
 from uplift.extras.pages.panels import draw
+from uplift.extras.scene.passes import scaled_power
 
 FILM_LIGHT = "D55"
 WIDTH = 2.7
@@ -50,10 +49,8 @@ DIM = 32
 
 
 def film_power() -> Array:
-    """Return the light of the film with Y = 1."""
-    spd = illuminant_spd(FILM_LIGHT)
-    luminous = matching_functions(DEFAULT_OBSERVER)[:, 1]
-    return spd / (spd @ luminous / luminous.sum())
+    """Return the light of the film, in units of a flat power with its Y."""
+    return scaled_power(FILM_LIGHT) * matching_functions()[:, 1].sum()
 
 
 def film_table(cube: uplift.Cube) -> tuple[float, Array]:

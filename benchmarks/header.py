@@ -1,4 +1,4 @@
-"""Rates, sizes and differences of exported programs, and of uplift.h and uplift.js,
+"""Rates and differences of exported programs, and of uplift.h and uplift.js,
 which read cube files at run time, for docs/integrate.md and docs/speed.md.
 """
 
@@ -16,8 +16,8 @@ from benchmarks import CUBES, MACBETH, ROOT, Row
 from benchmarks.programs import Words, compile_c, numbers, program_version
 from uplift.common.arrays import Array
 from uplift.extras.export import write_program
-from uplift.extras.export.module import compose_module, write_module
-from uplift.extras.export.runtime import HEADER, compose_header, write_header
+from uplift.extras.export.module import write_module
+from uplift.extras.export.runtime import HEADER, write_header
 from uplift.lookup import Cube, load
 from uplift.lookup.cube import PACKAGED
 from uplift.lookup.interpolate import is_inexact
@@ -98,11 +98,6 @@ def time_export(cube: Cube, mode: str, rgb: Array) -> Row:
     }
 
 
-def sizes() -> Row:
-    """Return the bytes of uplift.h and uplift.js."""
-    return {"header": len(compose_header()), "module": len(compose_module())}
-
-
 def lookups() -> Iterator[Row]:
     """Yield the nanoseconds of a lookup in stored and packaged cubes by an exported
     header, uplift.h and uplift.js, and differences of the latter two from Python.
@@ -157,4 +152,4 @@ def compared_colours(cube: Cube) -> Array:
     return rgb[inside | ~is_inexact(cube.data, exact)]
 
 
-QUESTIONS = {"programs": programs, "sizes": sizes, "lookups": lookups}
+QUESTIONS = {"programs": programs, "lookups": lookups}

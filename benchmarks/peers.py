@@ -18,9 +18,10 @@ from benchmarks import ROOT, Row
 from benchmarks.programs import output
 from uplift.colorimetry import observer
 from uplift.common.arrays import Array
+from uplift.lab.study.sensitivity import node_spectra
 from uplift.lab.timing import time_call, timing_stats
 from uplift.lattice import Lattice, axis_nodes
-from uplift.models import Moments, Sigmoid, evaluate, reflectance
+from uplift.models import Moments, Sigmoid, evaluate
 
 THRESHOLD = 1e-4
 """Largest |linear RGB| between a fitted spectrum and its colour: the threshold of
@@ -65,7 +66,7 @@ def ours() -> Iterator[Row]:
             uplift.build, dim=DIM, model=name, coefficients=count, prior="smooth"
         )
         data = build().data  # compiles
-        spectra = reflectance(data.model, data.points.coefficients, SENSOR.wavelengths)
+        spectra = node_spectra(data)
         yield {
             "tool": "uplift",
             "model": name,
