@@ -31,22 +31,16 @@ STALE = "stale"
 UNTIMED = frozenset(
     [
         "advice",
-        "atlas-files",
         "cameras",
         "determinism",
         "fidelity",
-        "film",
         "install",
-        "looks",
-        "meyer",
-        "moments",
-        "palette",
         "stability",
         "trust",
         "wavelengths",
     ]
 )
-"""Pages without timings, which may be measured two at once."""
+"""Long pages without timings, which may be measured two at once."""
 
 
 def pages() -> dict[str, str]:

@@ -13,9 +13,9 @@ from uplift.atlas import on_grid
 from uplift.colorimetry import Sensor, delta_e_rgb, delta_e_spectra, observer
 from uplift.common.arrays import Array
 from uplift.lab.method import at_1_nm, published_srgb
+from uplift.lab.study.sensitivity import node_spectra
 from uplift.lab.timing import time_call
 from uplift.lookup import MODES, Cube
-from uplift.models import reflectance
 
 DIM = 32
 MODELS = ("moments", "sigmoid")
@@ -126,7 +126,7 @@ def options() -> Iterator[Row]:
     their nodes and those of the default.
     """
     light = observer.light(OPTION_LIGHT)
-    default = node_spectra(uplift.build(MACBETH, dim=OPTION_DIM))
+    default = node_spectra(uplift.build(MACBETH, dim=OPTION_DIM).data)
     for option, value in OPTIONS:
         build = partial(
             uplift.build, MACBETH, dim=OPTION_DIM, debug=True, **{option: value}
@@ -140,15 +140,8 @@ def options() -> Iterator[Row]:
             "rounds": points.round.max() + 1,
             "improved": counts["improved"],
             "unfitted": counts["unfitted"],
-            **summary(delta_e_spectra(light, default, node_spectra(cube))),
+            **summary(delta_e_spectra(light, default, node_spectra(cube.data))),
         }
-
-
-def node_spectra(cube: Cube) -> Array:
-    """Return the reflectances (n, N) of the nodes."""
-    return reflectance(
-        cube.data.model, cube.data.points.coefficients, cube.data.sensor.wavelengths
-    )
 
 
 QUESTIONS = {"round_trips": round_trips, "ranges": ranges, "options": options}

@@ -4,6 +4,7 @@ for docs/atlas-files.md.
 
 import tempfile
 import warnings
+from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
@@ -30,33 +31,24 @@ def largest_difference(vendor: Vendor, atlas: Atlas) -> float:
     )
 
 
-def layouts() -> Row:
-    """Return the largest difference of the files of each format, and of all."""
+def layouts() -> Iterator[Row]:
+    """Yield the formats, with the number of layouts and the largest difference."""
     atlas = sample(read_atlas("macbeth"))
-    differences = {vendor: largest_difference(vendor, atlas) for vendor in VENDORS}
-    rows = []
+    differences: dict[str, list[float]] = {}
+    for vendor in VENDORS:
+        of_format = differences.setdefault(vendor.format, [])
+        of_format.append(largest_difference(vendor, atlas))
     for file_format in known_formats():
-        read = [
-            difference
-            for vendor, difference in differences.items()
-            if vendor.format == file_format.name
-        ]
-        rows.append(
-            {
-                "name": file_format.name,
-                "suffixes": ", ".join(file_format.suffixes),
-                "written": file_format.written,
-                "library": file_format.library or UPLIFT,
-                "extra": file_format.extra,
-                "layouts": len(read) or "the shipped atlases",
-                "difference": max(read, default=None),
-            }
-        )
-    return {
-        "files": len(differences),
-        "largest": max(differences.values()),
-        "formats": rows,
-    }
+        read = differences.get(file_format.name, [])
+        yield {
+            "name": file_format.name,
+            "suffixes": ", ".join(file_format.suffixes),
+            "written": file_format.written,
+            "library": file_format.library or UPLIFT,
+            "extra": file_format.extra,
+            "layouts": len(read) or "the shipped atlases",
+            "difference": max(read, default=None),
+        }
 
 
 def programs() -> list[Row]:

@@ -1,6 +1,6 @@
 """The ColorChecker: measured spectra and painted RGB, and pictures of it."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,6 +12,7 @@ from uplift.colorimetry.gamut import SRGB
 from uplift.common.arrays import Array
 from uplift.extras.colour.srgb import to_display_codes
 from uplift.extras.pages.marks import Mark, picture
+from uplift.extras.pages.panels import Panel
 
 COLUMNS = 6
 ROWS = 4
@@ -94,6 +95,16 @@ class Layout:
         for place, colour in zip(self.patches(), colours, strict=True):
             image[place] = colour
         return image
+
+
+LAYOUT = Layout(patch=32, gap=4)
+"""Of pictures of the chart."""
+
+
+def chart_panel(rgb: Array, title: str, marks: Sequence[Mark] = ()) -> Panel:
+    """Show patches (24, 3) in linear sRGB on the background, below marks."""
+    image = LAYOUT.paint(np.clip(rgb, 0, 1), np.full(3, BACKGROUND))
+    return Panel([photo(image), *marks], title)
 
 
 def photo(rgb: Array) -> Mark:

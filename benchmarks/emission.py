@@ -159,10 +159,7 @@ def errors() -> Iterator[Row]:
     radiometry = uplift.load_emission().data.radiometry
     uv = chromaticity(lamps.power @ radiometry)
     d65 = lamps.power[lamps.names.index("D65")]
-    lights = {
-        (LAMP, TABLE): predicted(LAMP)[0],
-        (FAMILY, TABLE): predicted(FAMILY)[0],
-    }
+    lights = {(rule, TABLE): predicted(rule)[0] for rule in RULES}
     others = {
         **by_nearest(lamps, uv, radiometry),
         "the prior alone": fit_lamp_prior(lamps.power, surfaces(), radiometry)[1],

@@ -8,7 +8,7 @@ window off.
 
 import json
 import tempfile
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from itertools import product
 from pathlib import Path
 from typing import Any
@@ -19,26 +19,23 @@ from scipy.special import ndtr
 
 import uplift
 from benchmarks import DOCS, ROOT, Row
-from benchmarks.checker import BACKGROUND, Layout, chart
+from benchmarks.checker import LAYOUT, chart, chart_panel
 from benchmarks.materials import materials
 from uplift.colorimetry.observer import (
-    DEFAULT_OBSERVER,
     grid,
-    illuminant_spd,
     light,
     matching_functions,
     sensor,
 )
 from uplift.common.arrays import Array
-from uplift.extras.colour.srgb import encode
 from uplift.extras.export import write_film
 from uplift.extras.export.film import CAT16, LAYER_WIDTH, LAYERS
 from uplift.extras.pages.figure import write_figure
-from uplift.extras.pages.marks import picture
-from uplift.extras.pages.panels import Panel, draw
+from uplift.extras.pages.marks import Mark
+from uplift.extras.pages.panels import draw
+from uplift.extras.scene.passes import scaled_power
 
 FILM_LIGHT = "D55"
-LAYOUT = Layout(patch=32, gap=4)
 WIDTH = 2.7
 """Inches of a chart's width in the picture."""
 PROGRAM = ROOT / "out" / "spektrafilm" / "src" / "spektrafilm" / "data"
@@ -52,10 +49,8 @@ DIM = 32
 
 
 def film_power() -> Array:
-    """Return the light of the film with Y = 1."""
-    spd = illuminant_spd(FILM_LIGHT)
-    luminous = matching_functions(DEFAULT_OBSERVER)[:, 1]
-    return spd / (spd @ luminous / luminous.sum())
+    """Return the light of the film, in units of a flat power with its Y."""
+    return scaled_power(FILM_LIGHT) * matching_functions()[:, 1].sum()
 
 
 def film_table(cube: uplift.Cube) -> tuple[float, Array]:
@@ -102,13 +97,14 @@ def expose_chart() -> list[Row]:
     layers = np.exp(-0.5 * ((grid()[:, None] - LAYERS[::-1]) / LAYER_WIDTH) ** 2)
     white = power @ layers
     measured = painted.measured * power @ layers
-    panels = [chart_panel("measured", measured / white)]
+    panels = [chart_panel(measured / white, "measured")]
     rows = []
     for name, cube in cubes.items():
         stated, table = film_table(cube)
         exposure = exposures(table @ layers, painted.painted)
         errors = stops(exposure, measured)
-        panels.append(chart_panel(name, exposure / white, errors))
+        shown = exposure / white
+        panels.append(chart_panel(shown, name, [write_errors(shown, errors)]))
         about = {"cube": name, "stated": stated}
         rows.append({**about, "mean": errors.mean(), "max": errors.max()})
     figure = draw(panels, len(panels), WIDTH)
@@ -116,17 +112,18 @@ def expose_chart() -> list[Row]:
     return rows
 
 
-def chart_panel(title: str, exposure: Array, errors: Sequence[float] = ()) -> Panel:
-    """Show exposures (24, 3) as linear RGB, with errors in stops on the patches."""
-    image = LAYOUT.paint(exposure, np.full(3, BACKGROUND))
+def write_errors(exposure: Array, errors: Array) -> Mark:
+    """Write errors (24,) in stops on the patches, whose exposures are (24, 3)."""
 
-    def write_errors(axes: Any) -> None:
-        for (rows, columns), error in zip(LAYOUT.patches(), errors, strict=False):
-            colour = "w" if image[rows, columns].mean() < 0.25 else "k"
-            place = columns.start + 2, rows.stop - 3
-            axes.text(*place, f"{error:.2f}", fontsize=7, color=colour)
+    def draw(axes: Any) -> None:
+        places = LAYOUT.patches()
+        for place, level, error in zip(places, exposure, errors, strict=True):
+            rows, columns = place
+            colour = "w" if level.mean() < 0.25 else "k"
+            corner = columns.start + 2, rows.stop - 3
+            axes.text(*corner, f"{error:.2f}", fontsize=7, color=colour)
 
-    return Panel([picture(encode(image)), write_errors], title)
+    return draw
 
 
 # --- films of spektrafilm ---

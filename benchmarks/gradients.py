@@ -12,7 +12,7 @@ import numpy as np
 
 import uplift
 from benchmarks import DOCS, Row
-from benchmarks.checker import BACKGROUND, Layout, chart, photo
+from benchmarks.checker import chart, chart_panel
 from uplift.colorimetry import delta_e_rgb
 from uplift.common.arrays import Array
 from uplift.common.compilation import compiled
@@ -39,10 +39,8 @@ MACBETH = "macbeth, 32³"
 WIDE = "packaged ACEScg"
 RATES = {MACBETH: (1_000_000, (3, 16, 31, 81)), WIDE: (20_000, (3, 81))}
 """Colours and wavelengths of the rates. Those of a wide-gamut cube take longer."""
-RUNS = 5
 CHECKED = 100_000
 """Colours of the precision."""
-LAYOUT = Layout(32, 4)
 
 
 @cache
@@ -100,10 +98,7 @@ def example() -> Row:
         **{f"{step} steps": paths[:, step] for step in (*SHOWN, STEPS)},
         "measured, D65": painted.painted,
     }
-    panels = []
-    for title, rgb in pictures.items():
-        image = LAYOUT.paint(np.clip(rgb, 0, 1), np.full(3, BACKGROUND))
-        panels.append(Panel([photo(image)], title))
+    panels = [chart_panel(rgb, title) for title, rgb in pictures.items()]
     curve = line(range(STEPS + 1), by_step)
     steps = Axis("steps")
     panels.append(Panel([curve], "mean ΔE00 to the truth", steps, Axis(log=True)))
@@ -185,9 +180,7 @@ def rates() -> Iterator[Row]:
             row: Row = {"cube": name, "wavelengths": width}
             for method, call in calls.items():
                 jax.block_until_ready(call())  # compiles
-                timing = time_call(
-                    lambda call=call: jax.block_until_ready(call()), RUNS
-                )
+                timing = time_call(lambda call=call: jax.block_until_ready(call()))
                 row[method] = timing.wall.scaled(1e6 / count)
             yield row
 

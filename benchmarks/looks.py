@@ -1,5 +1,5 @@
-"""Bounds of the ColorChecker under other lights, and cubes with looks, for
-docs/looks.md and its pictures.
+"""Regions of colours under other lights, and cubes with looks, for docs/looks.md and
+its pictures.
 """
 
 import tempfile
@@ -10,10 +10,9 @@ from pathlib import Path
 import numpy as np
 
 import uplift
-from benchmarks import CUBES, DOCS, MACBETH, Row
+from benchmarks import CUBES, DOCS, Row
 from benchmarks.browser import SETTLE, SHIFT, browser
 from benchmarks.materials import LARGE, SPLITS, other_halves
-from uplift.atlas import read_atlas
 from uplift.colorimetry import delta_e_rgb, lab
 from uplift.colorimetry.gamut import SRGB
 from uplift.colorimetry.likely_errors import mahalanobis
@@ -26,7 +25,6 @@ from uplift.extras.pages.marks import patches
 from uplift.extras.pages.panels import Panel, draw
 from uplift.extras.pages.plots import plot_bounds
 from uplift.extras.report.look_page import page
-from uplift.lab.runner import spectra_of
 from uplift.lookup import Cube
 from uplift.samples import sample_path
 
@@ -46,33 +44,13 @@ DAYLIGHT = "D65"
 COLUMNS = 3
 """Lights of a look in the picture, with daylight."""
 search = partial(bounds, divisions=3)
-"""As ``uplift bounds`` searches for one colour."""
+"""As ``uplift bounds`` for one colour."""
 
 
 @cache
 def stored_cube() -> Cube:
     """Read the cube whose answers have bounds."""
     return uplift.load(CUBES / "moments-16-macbeth.uplift")
-
-
-def patch_bounds() -> Iterator[Row]:
-    """Yield the largest ΔE00 of each patch, also by a search from 4 times as many
-    directions, and the share of all object colours.
-    """
-    srgb = stored_cube().data.sensor
-    atlas = read_atlas(MACBETH)
-    rgb = srgb.rgb(spectra_of(atlas, srgb))
-    for lamp in map(light, LIGHTS):
-        found = search(stored_cube(), rgb, lamp)
-        denser = bounds(stored_cube(), rgb, lamp, divisions=4)
-        for row, name in enumerate(atlas.names):
-            yield {
-                "name": name,
-                "light": lamp.name,
-                "largest": found.largest.delta_e_2000[row],
-                "denser": denser.largest.delta_e_2000[row],
-                "share": found.share[row],
-            }
 
 
 def likely() -> Iterator[Row]:
@@ -150,7 +128,6 @@ def looks() -> Iterator[Row]:
 
 
 QUESTIONS = {
-    "bounds": patch_bounds,
     "likely": likely,
     "regions": regions,
     "screenshot": screenshot,

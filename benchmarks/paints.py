@@ -14,7 +14,7 @@ import numpy as np
 import uplift
 from benchmarks import DOCS, REFERENCE, Row, summary
 from benchmarks.mixtures import Mixtures, acrylics, draw_ramps
-from benchmarks.programs import compile_c, numbers, program_version
+from benchmarks.programs import compile_c, numbers
 from uplift.colorimetry import delta_e_rgb
 from uplift.common.arrays import Array
 from uplift.extras.colour.srgb import decode, encode
@@ -232,7 +232,6 @@ def programs() -> Iterator[Row]:
             (recipe,) = numbers("node", script)
             yield {
                 "paints": len(paints),
-                "compiler": program_version("cc"),
                 "header": header.stat().st_size,
                 "rate": 1e-6 / seconds,
                 "recipe": recipe,

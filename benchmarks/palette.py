@@ -3,7 +3,6 @@ docs/palette.md.
 """
 
 from collections.abc import Callable
-from dataclasses import replace
 from functools import partial
 from itertools import product
 
@@ -52,17 +51,6 @@ def by_factors(model: FactorModel, power: Array, met: Array) -> Array:
     return model.rgb(model.reflectance(met).prod(axis=1) * model.light(power))
 
 
-def without_sharpening(model: FactorModel) -> FactorModel:
-    """Return the model of the principal basis."""
-    projection = np.linalg.inv(model.transform) @ model.projection
-    return replace(
-        model,
-        projection=projection,
-        light_projection=projection,
-        matrix=model.matrix @ model.transform,
-    )
-
-
 def by_matrices(model: FactorModel, power: Array, met: Array) -> Array:
     """Return products of the Λ model, whose first factor is the light in the span."""
     surfaces = np.moveaxis(model.reflectance(met), 1, 0)
@@ -89,9 +77,6 @@ def errors() -> list[Row]:
         model = standard_model(sensor, count)
         products[f"factor model, m = {count}"] = partial(by_factors, model)
         products[f"Λ model, m = {count}"] = partial(by_matrices, model)
-        if count == DEFAULT:
-            plain = without_sharpening(model)
-            products[f"m = {count}, not sharpened"] = partial(by_factors, plain)
     materials = on_grid(read_atlas(*ATLAS_FILES), sensor.wavelengths)
     rng = np.random.default_rng(2004)
     paths = {1: materials[:, None]}

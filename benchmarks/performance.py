@@ -1,4 +1,4 @@
-"""Times of builds, processes and `uplift.bulk`, for docs/speed.md."""
+"""Times of builds and processes, for docs/speed.md."""
 
 import shlex
 import tempfile
@@ -13,28 +13,20 @@ from benchmarks import MACBETH, UPLIFT, Row
 from benchmarks.materials import MIXTURE, SENSOR, materials
 from uplift.atlas import Atlas, Entry
 from uplift.common.arrays import Array
-from uplift.lab.timing import check_answer, time_call, time_command
-from uplift.lookup import bulk
+from uplift.lab.timing import time_call, time_command
 
-RUNS = 5
-FEW_RUNS = 3
-"""Runs of processes and large builds, which take long and vary little."""
+RUNS = 3
+"""Runs of processes and builds, which take long and vary little."""
 FIRST_RUN = {"JAX_ENABLE_COMPILATION_CACHE": "false"}
 """Variables with which a command finds no program that an earlier run compiled."""
 DIMS = (16, 32, 64, 128)
 LINES = (
     "python -c 'import numpy'",
     "uplift query '#cc3319' --format json",
-    "uplift --help",
 )
 MIXTURES = (24, 396, 10_000)
 """Entries of atlases of mixtures of three shipped spectra."""
 MIXTURE_DIM = 32
-WAVELENGTHS = np.linspace(400, 700, 16)
-COLOURS = 1_000_000
-"""Colours of `uplift.bulk`."""
-MAX_ERROR = 1e-6
-"""Its largest permitted difference of reflectance."""
 
 
 def processes() -> Iterator[Row]:
@@ -49,7 +41,7 @@ def processes() -> Iterator[Row]:
             program, *words = shlex.split(line)
             jobs.append((line, [str(Path(UPLIFT).with_name(program)), *words]))
         for line, command in jobs:
-            timing = time_command(command, FEW_RUNS, variables=FIRST_RUN)
+            timing = time_command(command, RUNS, variables=FIRST_RUN)
             yield {"what": line, "wall": timing.wall, "megabytes": timing.megabytes}
 
 
@@ -59,9 +51,7 @@ def builds() -> Iterator[Row]:
         build = partial(uplift.build, MACBETH, dim=dim)
         if unfitted := build().data.points.counts()["unfitted"]:
             raise RuntimeError(f"{unfitted} nodes are unfitted: nothing to time")
-        timing = time_call(build, FEW_RUNS)
-        node = timing.cpu.scaled(1e6 / dim**3)
-        yield {"dim": dim, "nodes": dim**3, "wall_s": timing.wall, "cpu_us": node}
+        yield {"dim": dim, "wall_s": time_call(build, RUNS).wall}
 
 
 def mixtures(count: int) -> Array:
@@ -85,19 +75,4 @@ def atlases() -> Iterator[Row]:
         yield {"entries": count, "cpu_s": timing.cpu.median}
 
 
-def bulk_lookups() -> Row:
-    """Return the CPU time of spectra of random colours by JAX on one thread."""
-    cube = uplift.build(MACBETH, dim=32)
-    rgb = np.random.default_rng(1).random((COLOURS, 3))
-    sample = bulk.spectra(cube, WAVELENGTHS, threads=1)
-    error = check_answer(sample(rgb), cube.reflectance(rgb, WAVELENGTHS), MAX_ERROR)
-    cpu = time_call(partial(sample, rgb), RUNS).cpu
-    return {"ns": cpu.scaled(1e9 / COLOURS), "error": error}
-
-
-QUESTIONS = {
-    "processes": processes,
-    "builds": builds,
-    "atlases": atlases,
-    "bulk": bulk_lookups,
-}
+QUESTIONS = {"processes": processes, "builds": builds, "atlases": atlases}

@@ -1,5 +1,5 @@
 """Sparse cubes for real images, and plans for these and the sample kitchen, for
-docs/plan.md and its picture.
+docs/plan.md.
 """
 
 import json
@@ -11,12 +11,8 @@ from functools import partial
 from pathlib import Path
 
 import uplift
-from benchmarks import DOCS, MACBETH, UPLIFT, Row
+from benchmarks import MACBETH, UPLIFT, Row
 from benchmarks.pictures import pictures
-from uplift.extras.pages.figure import ACCENT, write_figure
-from uplift.extras.pages.format import format_size
-from uplift.extras.pages.panels import Axis, Dot, draw
-from uplift.extras.pages.pareto import front_panel
 from uplift.extras.texture.scene_colours import Images
 from uplift.lab.timing import run_command, time_call
 from uplift.lookup import Cube
@@ -55,13 +51,10 @@ CASES = (
     Case(("rocket.jpg",), "", FIVE, 1.0),
     Case(("chelsea.png",), "", ("D65", "D55"), 1.0),
 )
-"""The front of the first case is shown."""
 
 
 def plans() -> Iterator[Row]:
-    """Yield the chosen candidates, their errors and the cost of the search; draw the
-    front of the first case.
-    """
+    """Yield the chosen candidates, their errors and the cost of the search."""
     for case in CASES:
         with tempfile.TemporaryDirectory() as name:
             folder = Path(name)
@@ -78,8 +71,6 @@ def plans() -> Iterator[Row]:
                 build += ["-o", "scene.uplift"]
                 run_command(build, folder=folder)
                 size = (folder / "scene.uplift").stat().st_size
-        if case == CASES[0]:
-            draw_front(found)
         error = found["error"]
         yield {
             "textures": case.pictures,
@@ -95,27 +86,6 @@ def plans() -> Iterator[Row]:
             "considered": found["search"]["considered"],
             "cpu_s": run.cpu,
         }
-
-
-def draw_front(found: Row) -> None:
-    """Draw error over memory and over samples for the front of a plan."""
-    axes = {
-        "memory": Axis("cube file and pixels", log=True, text=format_size),
-        "samples": Axis("samples per ray", log=True, text="{:g}".format),
-    }
-    panels = []
-    for key, axis in axes.items():
-        others = []
-        chosen = []
-        for candidate in found["front"]:
-            cost, error = candidate[key], candidate["error"]["quantile"]
-            if candidate["name"] == found["name"]:
-                chosen.append(Dot(cost, error, found["name"], ACCENT, "D"))
-            else:
-                others.append(Dot(cost, error))
-        panels.append(front_panel(f"ΔE00 over {key}", axis, chosen, others))
-    figure = draw(panels, 2, legend="below")
-    write_figure(figure, DOCS / "plan" / "front.png", force=True)
 
 
 def sparse() -> Iterator[Row]:

@@ -50,15 +50,14 @@ class Spread:
         the percentage of materials within that of samples.
         """
         light = observer.light(name)
-        samples = np.moveaxis(self.samples, 1, 0)
-        spread = [delta_e_spectra(light, sample, self.around) for sample in samples]
-        radii = np.quantile(spread, LEVELS, axis=0)
+        spread = delta_e_spectra(light, self.samples, self.around[:, None])
+        radii = np.quantile(spread, LEVELS, axis=1)
         error = delta_e_spectra(light, self.around, self.measured)
         within = 100 * (error <= radii).mean(axis=1)
         return {
             "light": name,
             "materials": error.mean(),
-            "samples": np.mean(spread),
+            "samples": spread.mean(),
             "within_68": within[0],
             "within_95": within[1],
         }

@@ -13,7 +13,7 @@ from PIL import Image
 
 import uplift
 from benchmarks import DOCS, Row, summary
-from benchmarks.checker import BACKGROUND, Layout, Place, chart, photo
+from benchmarks.checker import BACKGROUND, LAYOUT, Place, chart, photo
 from tests.examples import build_wheel, run_lines, unpack
 from uplift.colorimetry import Light, delta_e_2000, lab
 from uplift.colorimetry.observer import light, sensor
@@ -34,7 +34,6 @@ METHODS = MEASURED, PRODUCT, MITSUBA, PLAIN, ATLAS = (
     "uplift, no atlas",
     "uplift, with the chart",
 )
-LAYOUT = Layout(patch=32, gap=4)
 LIGHTS = tuple(map(light, RELIGHT_LIGHTS))
 WIDTH = 2.2
 """Inches of a picture of the chart."""

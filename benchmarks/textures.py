@@ -3,7 +3,6 @@
 import tempfile
 from collections.abc import Iterator
 from pathlib import Path
-from typing import NamedTuple
 
 import numpy as np
 
@@ -30,21 +29,13 @@ OTHERS: tuple[tuple[PixelEncoding, str], ...] = (
 )
 
 
-class Form(NamedTuple):
-    """A representation and its depth."""
-
-    name: str
-    encoding: PixelEncoding
-    depth: str
-
-
-def forms() -> Iterator[Form]:
-    """Yield spectra by wavelengths, then the other forms."""
+def forms() -> Iterator[tuple[str, PixelEncoding, str]]:
+    """Yield names, representations and depths: spectra by wavelengths, then others."""
     for first, last, step in GRIDS:
         spectrum = texture.Spectrum(tuple(map(float, range(first, last + 1, step))))
-        yield Form(f"spectrum, half, {first}:{last}:{step}", spectrum, "half")
+        yield f"spectrum, half, {first}:{last}:{step}", spectrum, "half"
     for encoding, depth in OTHERS:
-        yield Form(f"{encoding.name}, {depth}", encoding, depth)
+        yield f"{encoding.name}, {depth}", encoding, depth
 
 
 def round_trips() -> Iterator[Row]:
@@ -53,14 +44,14 @@ def round_trips() -> Iterator[Row]:
     images = list(pictures())
     with tempfile.TemporaryDirectory() as folder:
         target = Path(folder) / "texture.exr"
-        for form in forms():
-            uplifter = texture.prepare(cube, form.encoding, depth=form.depth)
+        for form, encoding, depth in forms():
+            uplifter = texture.prepare(cube, encoding, depth=depth)
             for picture in images:
                 texture.convert(uplifter, picture.path, target, force=True)
                 linear = np.clip(picture.linear(), 0, 1)
                 errors = delta_e_rgb(cube.data.sensor, linear, colours(target))
                 yield {
-                    "form": form.name,
+                    "form": form,
                     "channels": len(uplifter.channels),
                     "image": f"{picture.path.name} ({picture.package})",
                     **summary(errors.ravel()),

@@ -47,10 +47,8 @@ class Scene:
 
     def errors(self, light: str, answer: str) -> Array:
         """ΔE00 (H, W) of an answer under a light."""
-        pairs = (self.spectra[answer], self.spectra[MEASURED])
-        flat = [spectra.reshape(-1, spectra.shape[-1]) for spectra in pairs]
-        delta_e = delta_e_spectra(observer.light(light), *flat)
-        return delta_e.reshape(self.balls.shape[:2])
+        pair = self.spectra[answer], self.spectra[MEASURED]
+        return delta_e_spectra(observer.light(light), *pair)
 
 
 def choose(rgb: Array, count: int) -> Indices:

@@ -201,7 +201,7 @@ def use_palette(path: Path) -> None:
 
 
 SOURCES = {
-    "texture.png": ROOT / "docs" / "plan" / "front.png",
+    "texture.png": ROOT / "docs" / "mixing" / "mixer.png",
     "atlas.txt": ROOT / "atlases" / "macbeth.txt",
 }
 """Texture and atlas by their names in the folder of a scene or a plan."""

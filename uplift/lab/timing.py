@@ -15,12 +15,9 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from importlib import metadata
 from pathlib import Path
-from typing import TYPE_CHECKING, TypeVar
+from typing import TypeVar
 
 from uplift.common.version import version
-
-if TYPE_CHECKING:
-    from uplift.common.arrays import Values
 
 PACKAGES = ("numpy", "scipy", "jax", "colour-science", "safetensors")
 ONE_THREAD = {
@@ -98,13 +95,6 @@ class Timing:
         """Peak memory of a process."""
         return max(run.megabytes for run in self.runs)
 
-    def ratio_to(self, other: "Timing") -> TimingStats:
-        """CPU seconds relative to those of another, run by run: load of the machine
-        that lasts longer than a run cancels if they were timed in turn.
-        """
-        pairs = zip(self.runs, other.runs, strict=True)
-        return timing_stats([run.cpu / reference.cpu for run, reference in pairs])
-
 
 def stopwatch(function: Callable[[], Result]) -> tuple[Result, Run]:
     """Call a function; return its result and the time."""
@@ -157,19 +147,6 @@ def run_command(
     return Run(*map(float, done.stdout.split()))
 
 
-def time_in_turn(
-    tasks: Mapping[str, Callable[[], Run]], runs: int = RUNS
-) -> dict[str, Timing]:
-    """Time tasks, `run_call` or `run_command` of something, in turn: round by round,
-    so that all of them share the load of the machine.
-    """
-    found: dict[str, list[Run]] = {name: [] for name in tasks}
-    for _ in range(runs):
-        for name, task in tasks.items():
-            found[name].append(task())
-    return {name: Timing(tuple(of_task)) for name, of_task in found.items()}
-
-
 def time_call(function: Callable[[], object], runs: int = RUNS) -> Timing:
     """Time calls. The caller has called the function, which warms it up, and has
     checked the answer.
@@ -203,18 +180,6 @@ def time_command(
     """Time a process several times."""
     timed = (run_command(command, variables=variables) for _ in range(runs))
     return Timing(tuple(timed))
-
-
-def check_answer(answer: "Values", expected: "Values", tolerance: float) -> float:
-    """Return the largest difference of an answer; raise `RuntimeError` if it exceeds
-    the tolerance or is not a number, as there is nothing to time then.
-    """
-    worst = float(abs(answer - expected).max())
-    if not worst <= tolerance:
-        raise RuntimeError(
-            f"wrong answer, not timed: differs by {worst:g}, more than {tolerance:g}"
-        )
-    return worst
 
 
 def environment() -> dict[str, str]:

@@ -63,7 +63,6 @@ methods.
 """
 ATLAS = "c-moments9-32-atlas-spectra"
 """Cube of the figure whose error is that of the materials of its atlas."""
-TITLE = "Spectral upsampling: speed against accuracy"
 ERRORS = {
     "round_trip": "round trip, 1 nm",
     "coarse_round_trip": "round trip, 5 nm",
@@ -149,20 +148,14 @@ def render_chart(chart: Chart) -> str:
     for number, criterion in enumerate(compared):
         panel = criterion_panel(criterion, chart, number)
         pictures.append((criterion, page_svg(panel)))
-    sources = (f"{result.family}: {result.source}" for result in chart.results)
     return render(
         "lab/chart/templates/page.html.j2",
-        title=TITLE,
         chart=chart,
         pictures=pictures,
         families=family_colours((result.family for result in chart.measured), COLOURS),
         tooltips=[_tooltip(chart, result) for result in chart.results],
-        sources=list(dict.fromkeys(sources)),
         chosen=reference_batch(chart.batches),
         errors=ERRORS,
-        not_measured=[
-            result for result in chart.results if result.state != State.MEASURED
-        ],
     )
 
 

@@ -129,7 +129,6 @@ def render_comparison(comparison: Comparison, tuned: Sequence[Row] = ()) -> str:
     families = [row["family"] for row in comparison.rows]
     return render(
         "lab/comparison/templates/page.html.j2",
-        title="Representations of spectra",
         comparison=comparison,
         pictures=pictures,
         boxes=distributions,

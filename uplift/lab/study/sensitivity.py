@@ -205,16 +205,18 @@ def changed_atlases(
         yield f"{name} left out", name, others
 
 
+def node_spectra(data: CubeData) -> Array:
+    """Return the reflectances (n, N) of the nodes of a cube."""
+    return reflectance(data.model, data.points.coefficients, data.sensor.wavelengths)
+
+
 def compare(
     before: CubeData, after: CubeData, light: Light, description: str, name: str
 ) -> Change:
     """Compare the nodes of a cube with those after a change of its atlas, of all
     entries or of a named one.
     """
-    spectra = [
-        reflectance(data.model, data.points.coefficients, data.sensor.wavelengths)
-        for data in (before, after)
-    ]
+    spectra = [node_spectra(data) for data in (before, after)]
     distance = None
     if name:
         rgb = [
