@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from tests.lab.conftest import grey
 from uplift.atlas import read_atlas
 from uplift.colorimetry.delta_e import delta_e_spectra
 from uplift.fit import families_with
@@ -20,10 +21,6 @@ from uplift.lab.runner import (
 )
 
 LIGHTS = named_lights(("A", "FL11"))
-
-
-def grey(rgb, wavelengths):
-    return np.repeat(rgb.mean(axis=1, keepdims=True), len(wavelengths), axis=1)
 
 
 def prepare(task):

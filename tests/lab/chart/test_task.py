@@ -5,7 +5,7 @@ import numpy as np
 from tests.helpers import raises
 from uplift.atlas import Atlas, Entry, merge, read_atlas
 from uplift.common.errors import AtlasError
-from uplift.lab.chart.task import edges, make_task
+from uplift.lab.chart.task import Effort, make_task
 from uplift.lab.look_alikes import families_like
 from uplift.lab.runner import within
 
@@ -24,8 +24,8 @@ def test_every_second_entry_is_known_and_the_others_test():
     assert unseen.left_out == families_like(unseen.queried) != ()
 
 
-def test_edges_contain_every_corner_and_grey_once():
-    rgb = edges()
+def test_colours_contain_every_corner_and_grey_once():
+    rgb = make_task({"macbeth": read_atlas("macbeth")}, Effort(5)).colours
     assert len(np.unique(rgb, axis=0)) == len(rgb)
     assert np.isin(rgb, (0, 1)).all(axis=1).sum() == 8
     assert (np.ptp(rgb, axis=1) == 0).sum() == 9
