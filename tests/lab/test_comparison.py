@@ -128,16 +128,6 @@ def test_negative_lobes_of_a_filter_are_clipped_with_a_warning(checker):
     assert min(entry.values.min() for entry in lights) == 0
 
 
-UNKNOWN = """XX4 SG5 TM18 PS PS1 PS999 PS16:gaussian:7:nan RS16:box:3 PS16:box:4
-PS16:box:3:1 PS16:cone:3"""
-
-
-@pytest.mark.parametrize("name", UNKNOWN.split())
-def test_unknown_representations_raise(name):
-    with raises(OptionError, "option"):
-        find_representation(name)
-
-
 def test_named_lights_form_one_set():
     atlases = {"macbeth": read_atlas(MACBETH)}
     (part,) = make_scene(atlases, ["HP1", "LED-B3", "HP1"]).sets

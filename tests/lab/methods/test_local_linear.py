@@ -8,11 +8,10 @@ from numpy.testing import assert_allclose
 
 from uplift.atlas import read_atlas
 from uplift.colorimetry import observer
-from uplift.colorimetry.delta_e import delta_e_spectra
 from uplift.colorimetry.illuminants import SCENE_LIGHTS
 from uplift.lab.methods import local_linear as regression
 from uplift.lab.methods.local_linear import regress, squared_distances, tune
-from uplift.lab.runner import spectra_of, within
+from uplift.lab.runner import named_lights, spectra_of, spectrum_errors, within
 
 
 @pytest.fixture(scope="module")
@@ -32,6 +31,7 @@ def test_the_smoothing_has_the_least_leave_one_out_error(sensor, known, monkeypa
     monkeypatch.setattr(regression, "BANDWIDTHS", (10.0, 40.0))
     monkeypatch.setattr(regression, "RIDGES", (1e-6, 1e-2))
     colours = sensor.rgb(known)
+    lights = list(named_lights(SCENE_LIGHTS).values())
 
     def predict(known, rgb, smoothing):
         squares = squared_distances(sensor, rgb, sensor.rgb(known))
@@ -42,11 +42,8 @@ def test_the_smoothing_has_the_least_leave_one_out_error(sensor, known, monkeypa
             predict(np.delete(known, row, axis=0), colours[row : row + 1], smoothing)
             for row in range(len(known))
         ]
-        differences = [
-            delta_e_spectra(observer.light(name), np.concatenate(predicted), known)
-            for name in SCENE_LIGHTS
-        ]
-        return np.mean(differences)
+        spectra = np.concatenate(predicted)
+        return spectrum_errors(spectra, known, lights).delta_e.mean()
 
     best = min(itertools.product((10.0, 40.0), (1e-6, 1e-2)), key=slow)
     rgb = sensor.rgb(known.mean(axis=0)[None]) * [[0.9, 1.0, 1.1]]
