@@ -75,12 +75,12 @@ def test_set_up_is_part_of_the_time_of_a_call():
 
 CUBES = chart_of(
     row_of("peer", 1, 1e-3),
-    row_of("rough", 50, 2.0, build="uplift build --dim 8"),
-    row_of("good", 90, 0.5, build="uplift build --dim 32"),
-    row_of("better", 900, 0.2, build="uplift build --dim 64"),
-    row_of("no better", 9000, 0.199, build="uplift build --dim 128"),
-    row_of("atlas", 10, 3.0, build="uplift build --atlas FILE"),
-    row_of("small", 900, 0.9, memory=1.0, build="uplift build --dim 4"),
+    row_of("rough", 50, 2.0, build="build"),
+    row_of("good", 90, 0.5, build="build"),
+    row_of("better", 900, 0.2, build="build"),
+    row_of("no better", 9000, 0.199, build="build"),
+    row_of("atlas", 10, 3.0, build="build --atlas"),
+    row_of("small", 900, 0.9, memory=1.0, build="build"),
 )
 
 

@@ -21,6 +21,8 @@ from uplift.lab.study.moments import (
     study_moments,
 )
 
+pytestmark = pytest.mark.filterwarnings("ignore::uplift.UpliftWarning")
+
 
 def by_name(techniques):
     return pytest.mark.parametrize(
@@ -67,7 +69,6 @@ def rows():
     return where(study_moments(read_atlases(), 12).rows(), atlas=ALL_ATLASES)
 
 
-@pytest.mark.filterwarnings("ignore::uplift.UpliftWarning")
 @pytest.mark.parametrize("floats", [3, 5, 9, 13])
 def test_mirrored_techniques_have_the_least_error(rows, floats):
     def least(name, mirrored):
@@ -78,7 +79,6 @@ def test_mirrored_techniques_have_the_least_error(rows, floats):
         assert factor * least(name, True) < least(name, False)
 
 
-@pytest.mark.filterwarnings("ignore::uplift.UpliftWarning")
 @by_name(TECHNIQUES[:2])
 def test_errors_agree_with_those_of_the_thesis(rows, technique):
     row = pick(rows, mirrored=True, warped=technique.warped, moments=8)
