@@ -1,5 +1,7 @@
 """Tasks of measured materials, and the rows of methods at them."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from numpy.testing import assert_array_equal
@@ -11,7 +13,9 @@ from uplift.fit import families_with
 from uplift.lab.look_alikes import families_like
 from uplift.lab.method import PreparedMethod
 from uplift.lab.runner import (
+    Errors,
     divided,
+    join,
     measure,
     named_lights,
     spectra_of,
@@ -52,6 +56,13 @@ def test_rows_pool_the_errors_of_all_tasks(sensor, parts):
     assert row["within_error"] == pytest.approx((actual <= 5).mean())
     assert row["within_bound"] == pytest.approx((actual <= 10).mean())
     assert rows[2]["mean"] == pytest.approx((row["mean"] + rows[1]["mean"]) / 2)
+
+
+def test_what_one_part_lacks_is_left_out():
+    part = Errors(np.ones((2, 1)))
+    joined = join([part, replace(part, stated=np.ones((2, 1, 2)))])
+    assert len(joined.delta_e) == 4
+    assert joined.stated is None
 
 
 @pytest.mark.parametrize(
