@@ -1,5 +1,8 @@
 """HTML pages as tests read them: elements, texts and tables."""
 
+import json
+import re
+from collections import Counter
 from dataclasses import dataclass, field
 from html.parser import HTMLParser
 
@@ -87,6 +90,18 @@ class Page(HTMLParser):
             if texts(head)[: len(headings)] == list(headings)
         ]
         return body
+
+
+def markers(html):
+    """Numbers of the panel and of the row of every marker, counted."""
+    found = re.findall(r'id="marker-(\d+)-(\d+)"', html)
+    return Counter((int(panel), int(row)) for panel, row in found)
+
+
+def tooltips(html):
+    """The rows that the script of a page shows at its markers."""
+    (data,) = re.findall(r'json" id="rows">(.*?)</script>', html, re.DOTALL)
+    return json.loads(data)
 
 
 def external_links(html):

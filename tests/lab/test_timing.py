@@ -1,10 +1,10 @@
 """Timings and their environment."""
 
-import subprocess
 import sys
 
 import pytest
 
+from tests.helpers import output_of
 from uplift.lab import timing
 
 
@@ -31,10 +31,7 @@ def test_commit_states_changed_code_but_not_the_measurements_of_the_package(
     tmp_path, monkeypatch
 ):
     def git(*words):
-        names = ("-c", "user.name=test", "-c", "user.email=test@example.org")
-        subprocess.run(
-            ["git", *names, *words], cwd=tmp_path, check=True, capture_output=True
-        )
+        output_of("git", *words, cwd=tmp_path)
 
     code = tmp_path / "uplift" / "lab" / "timing.py"
     chart = tmp_path / "uplift" / "lab" / "chart" / "measured.csv"
@@ -43,11 +40,10 @@ def test_commit_states_changed_code_but_not_the_measurements_of_the_package(
         file.write_text("first")
     monkeypatch.setattr(timing, "SOURCES", tmp_path / "uplift")
     monkeypatch.setattr(timing, "__file__", str(code))
-    assert (
-        timing.commit() == "unknown"
-    )  # without git, and in a repository that does not track the code
     git("init", "-q")
-    assert timing.commit() == "unknown"
+    git("config", "user.name", "test")
+    git("config", "user.email", "test@example.org")
+    assert timing.commit() == "unknown"  # not tracked
     git("add", ".")
     git("commit", "-q", "-m", "first")
     first = timing.commit()

@@ -124,10 +124,14 @@ def test_passes_of_rgb_are_near_to_spectra(every, checker, count, limit):
     assert passes.numbers(checker.powers, checker.surfaces) == (count, count)
 
 
-@pytest.mark.parametrize("count", [2, 4, 15])
-def test_a_pass_has_three_bands(count):
-    with raises(OptionError):
-        find_representation(f"RP{count}")
+UNKNOWN = """XX4 SG5 TM18 PS PS1 PS999 PS16:gaussian:7:nan RS16:box:3 PS16:box:4
+PS16:box:3:1 PS16:cone:3 RP2 RP4 RP15"""
+
+
+@pytest.mark.parametrize("name", UNKNOWN.split())
+def test_unknown_representations_raise(name):
+    with raises(OptionError, "option"):
+        find_representation(name)
 
 
 RANDOM = np.random.default_rng(5).random((3, 401))

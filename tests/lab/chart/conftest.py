@@ -24,10 +24,10 @@ def method_of(uplift, prepare=None, **fields):
     return Method(**texts, prepare=prepare, **fields)
 
 
-def row_of(name, time, error, **fields):
+def row_of(name, time, error, memory=1e4, **fields):
     """Make a result in which all errors are equal."""
     numbers = dict.fromkeys(REQUIRED, error)
-    numbers |= {"time_ns": time, "bytes": 1e4, "build_s": 1.0, "setup_s": 1.5}
+    numbers |= {"time_ns": time, "bytes": memory, "build_s": 1.0, "setup_s": 1.5}
     for batch, each in zip(BATCHES, (10 * time, time), strict=True):
         key = f"ns_{batch}"
         numbers |= {key: each, f"{key}_least": each, f"{key}_most": 2 * each}

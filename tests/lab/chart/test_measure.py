@@ -7,16 +7,12 @@ import pytest
 from numpy.testing import assert_allclose
 
 from tests.lab.chart.conftest import BATCHES, method_of
+from tests.lab.conftest import grey
 from uplift.extras.colour.light_sets import CHART_LIGHTS
 from uplift.lab.chart.measure import MAX_CLAIM_RATIO, measure_method
 from uplift.lab.chart.results import State
 from uplift.lab.method import PreparedMethod, ours
 from uplift.lab.runner import named_lights, spectrum_errors
-
-
-def grey(rgb, wavelengths):
-    """A valid answer with a large error."""
-    return np.repeat(rgb.mean(axis=1, keepdims=True), len(wavelengths), axis=1)
 
 
 def nan(rgb, wavelengths):
@@ -52,7 +48,6 @@ def burn(seconds):
             {"dtype": "float32"},
             "spectra are float64 instead of float32",
         ),
-        (None, {"prepare": lambda task: fail(0, 0)}, "raises ZeroDivisionError"),
     ],
 )
 def test_broken_answer_is_reported_and_not_timed(small_task, uplift, fields, why):
@@ -82,41 +77,38 @@ def test_errors_are_those_of_the_runner(small_task):
 
 
 def test_each_number_of_colours_is_timed_in_the_type_of_the_method(small_task):
-    calls = set()
+    sizes = set()
 
     def uplift(rgb, wavelengths):
-        calls.add((len(rgb), rgb.dtype))
+        assert rgb.dtype == np.float32
+        sizes.add(len(rgb))
         return grey(rgb, wavelengths)
 
     numbers = measure_method(method_of(uplift, dtype="float32"), small_task).numbers
     for batch in BATCHES:
-        assert (batch, np.dtype("float32")) in calls
+        assert batch in sizes
         name = f"ns_{batch}"
         assert numbers[f"{name}_least"] <= numbers[name] <= numbers[f"{name}_most"]
         assert numbers[f"{name}_colours"] == batch
     assert numbers["time_ns"] == numbers["ns_64"]
-    assert {dtype for _, dtype in calls} == {np.dtype("float32")}
 
 
-def test_slow_methods_process_as_many_colours_as_time_allows(small_task):
+@pytest.mark.parametrize(
+    ("call", "colour", "is_whole"), [(0, 0.01, False), (0.004, 0, True)]
+)
+def test_calls_have_as_many_colours_as_time_allows(small_task, call, colour, is_whole):
+    """Seconds of a call and of each of its colours."""
+
     def slow(rgb, wavelengths):
-        burn(0.01 * len(rgb))
+        burn(call + colour * len(rgb))
         return grey(rgb, wavelengths)
 
     numbers = measure_method(method_of(slow), small_task).numbers
-    assert 1 <= numbers["round_trip_colours"] <= 5
-    assert numbers["unseen_spectra"] == numbers["round_trip_colours"]
+    count = numbers["round_trip_colours"]
+    assert numbers["unseen_spectra"] == min(count, len(small_task.unseen.queried))
+    assert (1 <= count <= 5) != is_whole
     assert numbers["ns_1_colours"] == 1
-    assert 1 <= numbers["ns_64_colours"] < 64
-
-
-def test_calls_with_an_overhead_take_the_whole_batch(small_task):
-    def costly(rgb, wavelengths):
-        burn(0.004)
-        return grey(rgb, wavelengths)
-
-    numbers = measure_method(method_of(costly), small_task).numbers
-    assert numbers["ns_64_colours"] == 64
+    assert (numbers["ns_64_colours"] == 64) == is_whole
 
 
 @pytest.mark.parametrize("build", [3.0, None])

@@ -3,53 +3,43 @@
 import itertools
 
 import numpy as np
-import pytest
 from numpy.testing import assert_allclose
 
 from uplift.atlas import read_atlas
 from uplift.colorimetry import observer
-from uplift.colorimetry.delta_e import delta_e_spectra
 from uplift.colorimetry.illuminants import SCENE_LIGHTS
-from uplift.lab.methods import local_linear as regression
-from uplift.lab.methods.local_linear import regress, squared_distances, tune
-from uplift.lab.runner import spectra_of, within
-
-
-@pytest.fixture(scope="module")
-def known(sensor):
-    return spectra_of(within(read_atlas("rawtoaces"), sensor), sensor)[::9]
+from uplift.lab.methods import local_linear
+from uplift.lab.runner import named_lights, spectra_of, spectrum_errors, within
 
 
 def test_spectra_that_are_linear_in_rgb_are_reproduced(sensor):
     weights = np.random.default_rng(0).uniform(-2, 2, (45, 3))
     spectra = 0.5 + weights @ observer.light("A").xyz
-    found = tune(sensor, spectra[:40])(sensor.rgb(spectra[40:]))
+    found = local_linear.tune(sensor, spectra[:40])(sensor.rgb(spectra[40:]))
     assert_allclose(found, spectra[40:], atol=1e-3)
 
 
-def test_the_smoothing_has_the_least_leave_one_out_error(sensor, known, monkeypatch):
+def test_the_smoothing_has_the_least_leave_one_out_error(sensor, monkeypatch):
     """Compared with leaving out one by one."""
-    monkeypatch.setattr(regression, "BANDWIDTHS", (10.0, 40.0))
-    monkeypatch.setattr(regression, "RIDGES", (1e-6, 1e-2))
+    known = spectra_of(within(read_atlas("rawtoaces"), sensor), sensor)[::9]
     colours = sensor.rgb(known)
+    lights = list(named_lights(SCENE_LIGHTS).values())
 
-    def predict(known, rgb, smoothing):
-        squares = squared_distances(sensor, rgb, sensor.rgb(known))
-        return regress(sensor, known, rgb, squares, smoothing)
+    def tuned(spectra, *choices):
+        for name, values in zip(("BANDWIDTHS", "RIDGES"), choices, strict=True):
+            monkeypatch.setattr(local_linear, name, values)
+        return local_linear.tune(sensor, spectra)
 
-    def slow(smoothing):
+    def slow(choices):
         predicted = [
-            predict(np.delete(known, row, axis=0), colours[row : row + 1], smoothing)
+            tuned(np.delete(known, row, axis=0), *choices)(colours[row : row + 1])
             for row in range(len(known))
         ]
-        differences = [
-            delta_e_spectra(observer.light(name), np.concatenate(predicted), known)
-            for name in SCENE_LIGHTS
-        ]
-        return np.mean(differences)
+        spectra = np.concatenate(predicted)
+        return spectrum_errors(spectra, known, lights).delta_e.mean()
 
-    best = min(itertools.product((10.0, 40.0), (1e-6, 1e-2)), key=slow)
+    best = min(itertools.product([(10.0,), (40.0,)], [(1e-6,), (1e-2,)]), key=slow)
     rgb = sensor.rgb(known.mean(axis=0)[None]) * [[0.9, 1.0, 1.1]]
-    spectra = tune(sensor, known)(rgb)
-    assert_allclose(spectra, predict(known, rgb, best), atol=1e-12)
+    spectra = tuned(known, (10.0, 40.0), (1e-6, 1e-2))(rgb)
+    assert_allclose(spectra, tuned(known, *best)(rgb), atol=1e-12)
     assert_allclose(sensor.rgb(spectra), rgb, atol=1e-6)

@@ -19,8 +19,8 @@ from uplift.lab.runner import divided
 
 SENSOR = observer.sensor()
 AT = SENSOR.wavelengths
-COLOURS = np.concatenate([np.random.default_rng(4).random((20, 3)), np.eye(3)])
-COLOURS = np.concatenate([COLOURS, np.zeros((1, 3)), np.ones((1, 3))])
+RANDOM = np.random.default_rng(4).random((20, 3))
+COLOURS = np.concatenate([RANDOM, np.eye(3), [[0, 0, 0], [1, 1, 1]]])
 
 
 @pytest.fixture(scope="module")
@@ -34,10 +34,8 @@ def prepared(name, task):
     return method.prepare(task).uplift
 
 
-def test_methods_are_selected_by_pattern():
+def test_all_methods_are_selected_by_default():
     assert select_methods() == list(METHODS)
-    selected = {method.method for method in select_methods(("mallett2019", "sm*9"))}
-    assert selected == {"mallett2019", "smits1999"}
 
 
 @pytest.mark.parametrize(
@@ -51,9 +49,8 @@ def test_smits_and_mallett_match_colour_science(task, name, theirs):
 
 
 def test_jakob_has_the_colour(task):
-    rgb = np.array([[0.5, 0.4, 0.3], [0.2, 0.3, 0.35]])
-    found = prepared("jakob2019-direct", task)(rgb, AT)
-    assert_allclose(SENSOR.rgb(found), rgb, atol=2e-3)
+    found = prepared("jakob2019-direct", task)(RANDOM, AT)
+    assert_allclose(SENSOR.rgb(found), RANDOM, atol=2e-3)
 
 
 @pytest.mark.parametrize(

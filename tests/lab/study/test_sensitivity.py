@@ -5,7 +5,7 @@ import pytest
 from numpy.testing import assert_array_equal
 
 import uplift
-from uplift.atlas import Atlas, read_atlas
+from uplift.atlas import read_atlas
 from uplift.colorimetry import delta_e_spectra, observer
 from uplift.lab.study.sensitivity import (
     CONTINUOUS_MODES,
@@ -19,8 +19,8 @@ from uplift.lab.study.sensitivity import (
 LIGHT = observer.light("FL11")
 
 
-def test_answers_change_in_proportion_to_the_query_and_do_not_jump(small_cube):
-    rows = perturb(small_cube, 200)
+def test_answers_change_in_proportion_to_the_query_and_do_not_jump():
+    rows = perturb(uplift.build(dim=8, step=10), 200)
     steps = (rows[::3], rows[1::3], rows[2::3])
     assert [row["mode"] for row in rows[::3]] == list(CONTINUOUS_MODES)
     for wide, narrow, rounding in zip(*steps, strict=True):
@@ -30,11 +30,6 @@ def test_answers_change_in_proportion_to_the_query_and_do_not_jump(small_cube):
         assert 0 < rounding["light_most"] < 1e-2
         assert wide["rms_mean"] < wide["rms_most"] < wide["largest"]
     assert max(row["jump"] for row in rows) < 2e-3
-
-
-def test_cubes_of_any_wavelengths_are_studied():
-    rows = perturb(uplift.build(dim=3, step=10), 20)
-    assert len(rows) == 3 * len(CONTINUOUS_MODES)
 
 
 @pytest.mark.parametrize("width", [1e-12, 0.004])
@@ -54,35 +49,31 @@ def test_jumps_are_found_and_only_those(width):
     assert jump == pytest.approx(expected * (width < 1e-6), abs=1e-3 * expected)
 
 
-@pytest.fixture(scope="module")
-def tcs(repository):
-    return read_atlas(repository / "atlases" / "tcs.txt").entries
+TCS = read_atlas("tcs")
 
 
-def test_atlases_are_changed_as_described(tcs):
-    changes = [entries for *_, entries in changed_atlases(tcs, [tcs[0].name])]
+def test_atlases_are_changed_as_described():
+    first, *others = TCS
+    changes = [entries for *_, entries in changed_atlases(TCS.entries, [first.name])]
     _, _, noisy, wrong, left_out = changes
-    pairs = zip(noisy, tcs, strict=True)
+    pairs = zip(noisy, TCS, strict=True)
     noise = np.array([one.values - other.values for one, other in pairs])
     assert noise.std() == pytest.approx(0.002, rel=0.1)
-    assert_array_equal(wrong[0].values, tcs[0].values[::-1])
-    assert wrong[1:] == left_out == list(tcs[1:])
+    assert_array_equal(wrong[0].values, first.values[::-1])
+    assert wrong[1:] == left_out == others
 
 
 @pytest.mark.filterwarnings("ignore::uplift.UpliftWarning")
-def test_entries_act_mostly_on_near_nodes(tcs):
+def test_entries_act_mostly_on_near_nodes():
     """Far nodes move a little: the weights of the families of spectra are learnt from
     the whole atlas.
     """
-    data = uplift.build(Atlas(tcs), dim=8).data
-    *_, wrong, removed = perturb_atlas(data, Atlas(tcs), 1)
+    data = uplift.build(TCS, dim=8).data
+    *_, removed = perturb_atlas(data, TCS, 1)
     assert (removed.delta_e[removed.distance.argmin(axis=1)] > 0).all()
     far = removed.distance[1] > 60
     near = removed.distance[1] < 20
-    assert far.sum() > 100
     assert removed.delta_e[far].mean() < 0.3 * removed.delta_e[near].mean()
-    assert 0 < wrong.row()["moved"] < 0.1
-    assert 0 < wrong.row()["lab_radius"] < 80
 
 
 def test_moved_share_and_radius_by_hand():
