@@ -3,7 +3,7 @@
 import tempfile
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from functools import cache
+from functools import cache, partial
 from itertools import product
 from pathlib import Path
 
@@ -18,7 +18,7 @@ from uplift.extras.photographs import Noise, Photographs
 from uplift.extras.photographs.errors import photographed
 from uplift.extras.texture.picture import read_picture
 from uplift.lab.runner import Errors, Task, join, named_lights, spectrum_errors
-from uplift.lab.timing import run_command, time_command
+from uplift.lab.timing import run_command, time_in_turn
 from uplift.lookup import Cube
 from uplift.lookup.errors_under_lights import Evidence, errors_from, evidence
 from uplift.samples import sample_path
@@ -180,13 +180,16 @@ def texture() -> Row:
         second = Path(folder, "tungsten.exr")
         write_parts([make_part("", {}, planes)], first)
         run_command([UPLIFT, "relight", first, "-o", second, "--light", "A"])
-        command = [UPLIFT, "texture", first, "-o", Path(folder, "out.exr"), "--force"]
-        one = time_command(command, TEXTURE_RUNS)
-        two = time_command([*command, "--also", f"A:{second}"], TEXTURE_RUNS)
+        one = [UPLIFT, "texture", first, "-o", Path(folder, "out.exr"), "--force"]
+        two = [*one, "--also", f"A:{second}"]
+        times = time_in_turn(
+            {"one": partial(run_command, one), "two": partial(run_command, two)},
+            TEXTURE_RUNS,
+        )
     return {
         "size": day.shape[:2],
-        "ratio": two.cpu.median / one.cpu.median,
-        "megabytes": {"one": one.megabytes, "two": two.megabytes},
+        "ratio": times["two"].ratio_to(times["one"]),
+        "megabytes": {name: timing.megabytes for name, timing in times.items()},
     }
 
 

@@ -95,6 +95,13 @@ class Timing:
         """Peak memory of a process."""
         return max(run.megabytes for run in self.runs)
 
+    def ratio_to(self, other: "Timing") -> TimingStats:
+        """CPU seconds relative to those of another, run by run: load of the machine
+        that lasts longer than a run cancels if they were timed in turn.
+        """
+        pairs = zip(self.runs, other.runs, strict=True)
+        return timing_stats([run.cpu / reference.cpu for run, reference in pairs])
+
 
 def stopwatch(function: Callable[[], Result]) -> tuple[Result, Run]:
     """Call a function; return its result and the time."""
@@ -145,6 +152,19 @@ def run_command(
         words = " ".join(map(str, command))
         raise RuntimeError(f"{words} failed\n{done.stderr}")
     return Run(*map(float, done.stdout.split()))
+
+
+def time_in_turn(
+    tasks: Mapping[str, Callable[[], Run]], runs: int = RUNS
+) -> dict[str, Timing]:
+    """Time tasks, `run_call` or `run_command` of something, in turn: round by round,
+    so that all of them share the load of the machine.
+    """
+    found: dict[str, list[Run]] = {name: [] for name in tasks}
+    for _ in range(runs):
+        for name, task in tasks.items():
+            found[name].append(task())
+    return {name: Timing(tuple(of_task)) for name, of_task in found.items()}
 
 
 def time_call(function: Callable[[], object], runs: int = RUNS) -> Timing:
