@@ -130,10 +130,14 @@ def with_printed(
     """Add columns of a table in tests/reference, converted by functions, to the rows
     that agree with its rows in ``keys``; None to others.
     """
-    printed = {tuple(row[key] for key in keys): row for row in read_reference(table)}
+
+    def identify(row: Mapping[str, Any]) -> tuple[str, ...]:
+        return tuple(str(row[key]) for key in keys)
+
+    printed = {identify(row): row for row in read_reference(table)}
     joined = []
     for row in rows:
-        same = printed.get(tuple(str(row[key]) for key in keys))
+        same = printed.get(identify(row))
         for name, convert in columns.items():
             row = {**row, f"thesis_{name}": same and convert(same[name])}
         joined.append(row)

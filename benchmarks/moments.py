@@ -4,6 +4,8 @@ docs/reproductions.md and its pictures.
 
 from itertools import product
 
+import numpy as np
+
 from benchmarks import DOCS, MACBETH, Row, with_printed
 from benchmarks.materials import SENSOR, inside, read_atlases
 from uplift.atlas import merge, read_atlas
@@ -34,13 +36,15 @@ def errors() -> list[Row]:
     study = study_moments(read_atlases(), techniques=tuple(METHODS.values()))
     of_all = [row for row in study.rows() if row["atlas"] == ALL_ATLASES]
     counts = len(of_all) // len(METHODS)
-    names = [name for name in METHODS for _ in range(counts)]
+    names = np.repeat(list(METHODS), counts).tolist()
     named = [{"method": name, **row} for name, row in zip(names, of_all, strict=True)]
     table = "moments_todova2020.csv"
     rows = with_printed(named, table, ("method", "moments"), mean=float, max=float)
     printed = [row for row in rows if row["thesis_mean"]]
     columns = {"delta_e_76_D65_mean": "thesis_mean", "delta_e_76_D65_max": "thesis_max"}
-    thesis = [row | {name: row[of] for name, of in columns.items()} for row in printed]
+    thesis = [dict(row) for row in printed]
+    for row in thesis:
+        row |= {name: row[of] for name, of in columns.items()}
     both = {f"our {len(study.names)} entries": printed, "Tódová 2020": thesis}
     plot_errors(both, PICTURES / "errors.png", force=True)
     plot_patches(study, PICTURES / "patches.png", force=True)

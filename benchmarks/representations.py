@@ -42,7 +42,7 @@ def errors() -> list[Row]:
 
 def closed_cells() -> list[Row]:
     """Compare Riemann sums over closed cells under the lights of the thesis."""
-    sums = [make(count) for make in (closed, enhanced) for count in RIEMANN_COUNTS]
+    sums = [*map(closed, RIEMANN_COUNTS), *map(enhanced, RIEMANN_COUNTS)]
     return with_tables_6(compare(scene(), sums).rows)
 
 

@@ -131,7 +131,10 @@ def of_set(name: str) -> Found:
     else:
         halves = enumerate(other_halves(name, dim=DIM))
         parts = [of_half(*half, seed) for seed, half in halves]
-    return {key: join([part[key] for part in parts]) for key in parts[0]}
+    joined = {}
+    for key in parts[0]:
+        joined[key] = join([part[key] for part in parts])
+    return joined
 
 
 def errors() -> Iterator[Row]:

@@ -24,6 +24,7 @@ import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from importlib import import_module
 from itertools import chain
+from operator import itemgetter
 from pathlib import Path
 from typing import Any
 
@@ -154,7 +155,7 @@ def average(rows: Iterable[Row], by: str) -> list[Row]:
     found: list[Row] = []
     for names, same in groups.items():
         means = {
-            column: statistics.fmean(row[column] for row in same)
+            column: statistics.fmean(map(itemgetter(column), same))
             for column, value in same[0].items()
             if isinstance(value, float)
         }
@@ -170,7 +171,8 @@ def leaves(value: Any, name: str = "") -> Iterator[tuple[str, Any]]:
         for key, item in value.items():
             yield from leaves(item, f"{name}.{key}" if name else str(key))
     elif isinstance(value, list):
-        yield name, "; ".join(str(leaf) for item in value for _, leaf in leaves(item))
+        items = chain.from_iterable(map(leaves, value))
+        yield name, "; ".join(str(leaf) for _, leaf in items)
     else:
         yield name, f"{value:.6g}" if isinstance(value, float) else value
 

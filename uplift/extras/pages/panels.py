@@ -210,7 +210,9 @@ def _set_axis(axis: Any, wanted: Axis) -> None:
 
 def _fit_heights(figure: Any, cells: Any, width: float) -> None:
     """Give rows the heights of their pictures and texts."""
-    heights = [max(_height(axes, width) for axes in row) for row in cells]
+    heights = []
+    for row in cells:
+        heights.append(max(_height(axes, width) for axes in row))
     cells[0, 0].get_gridspec().set_height_ratios(heights)
     figure.set_size_inches(figure.get_size_inches()[0], sum(heights))
 

@@ -192,6 +192,8 @@ def study_moments(
         ]
         errors.append(np.column_stack(columns))
     shape = (len(techniques), counts, len(measured), len(MEASURES))
-    origins = [name for name in atlases for _ in atlases[name]]
+    origins: list[str] = []
+    for name, entries in atlases.items():
+        origins += [name] * len(entries)
     by_case = np.reshape(errors, shape)
     return MomentsStudy(atlas.names, tuple(origins), measured, techniques, by_case)
