@@ -23,10 +23,16 @@ def loaded_subpackages(code):
     return rooms - {"extras"}, set(modules)
 
 
-QUERY = (
-    "from uplift_cli.main import main\ntry: main(['query', '#123456', '--format', "
-    "'json'])\nexcept SystemExit: pass"
-)
+def command(*words):
+    """Code that runs a command."""
+    return (
+        f"from uplift_cli.main import main\ntry: main({list(words)})\n"
+        "except SystemExit: pass"
+    )
+
+
+QUERY = command("query", "#123456", "--format", "json")
+RECOMMENDATION = command("chart", "--recommend", "--tolerance", "1")
 
 
 def test_builds_and_queries_load_only_the_core():
@@ -43,6 +49,7 @@ def test_builds_and_queries_load_only_the_core():
         "numpy.ma",
         *HEAVY_OF_FITS,
     }
+    assert not loaded_subpackages(RECOMMENDATION)[1] & {"matplotlib", *HEAVY_OF_FITS}
     assert loaded_subpackages("import uplift; uplift.build(dim=2)")[0] == CORE | {
         "atlas",
         "fit",

@@ -17,6 +17,7 @@ from uplift.colorimetry import Light, Sensor, delta_e_2000, lab, observer
 from uplift.colorimetry.illuminants import DEFAULT_ILLUMINANT
 from uplift.common.arrays import Array, Values
 from uplift.common.colour_science import colour_science
+from uplift.lab.description import Description
 from uplift.lab.runner import Errors, Task, spectrum_errors
 
 RANGE = (360.0, 830.0, 1.0)
@@ -98,29 +99,6 @@ class PreparedMap:
             actual = lab(task.queried @ light.xyz.T, light.white)
             columns.append(delta_e_2000(mapped, actual))
         return Errors(np.stack(columns, axis=1))
-
-
-@dataclass(frozen=True, kw_only=True)
-class Description:
-    """Texts about a method: columns of the table of a chart.
-
-    ``method``, ``title``: name for the command line, and name to display. ``label``:
-    label of its marker, by default the title. ``family``: name in the legend, by
-    default the title up to a comma. ``source``: publication. ``mode``: mode of lookup
-    of a cube, which determines the shape of the marker. ``build``, ``call``: command
-    and call that give a user of this package the same; empty for other methods.
-    """
-
-    method: str
-    title: str
-    label: str = ""
-    family: str = ""
-    source: str
-    mode: str = ""
-    dtype: str = "float64"
-    build: str = ""
-    call: str = ""
-    note: str = ""
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -18,12 +18,8 @@ from uplift.extras.images.processes import ChildError, call_in_child
 from uplift.lab.chart.call_times import BrokenError, affordable, call_times
 from uplift.lab.chart.results import SUMMARY, Chart, MethodResult, State
 from uplift.lab.chart.task import ChartTask
-from uplift.lab.method import (
-    Description,
-    Method,
-    NotInstalledError,
-    PreparedMethod,
-)
+from uplift.lab.description import Description
+from uplift.lab.method import Method, NotInstalledError, PreparedMethod
 from uplift.lab.runner import named_lights
 from uplift.lab.timing import environment, run_call
 

@@ -19,7 +19,7 @@ from uplift.extras.colour.light_sets import CHART_LIGHTS
 from uplift.extras.files.csv import csv_text, parse_csv
 from uplift.extras.pages.format import format_error, format_time
 from uplift.extras.pages.pareto import pareto_front
-from uplift.lab.method import Description
+from uplift.lab.description import Description
 
 FACTS = ("machine", "versions", "commit", "colours", "spectra", "effort")
 """Columns with the same text in all rows."""
