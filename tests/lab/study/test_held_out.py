@@ -16,7 +16,7 @@ def test_half_an_atlas_of_similar_spectra_predicts_the_other():
     entries = (Entry(f"{level:.3f}", GRID, level * ripples) for level in levels)
     family = Atlas(tuple(entries))
     events = []
-    records = holdout(family, 2, events.append, dim=8, trust_atlas=True)
+    records = holdout(family, 2, events.append, dim=8)
     assert events[-1].done == events[-1].total == len(records)
     by_method = {record["cube"]: record for record in records}
     half = by_method[HALF]

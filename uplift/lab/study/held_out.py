@@ -50,10 +50,12 @@ def holdout(
     atlas: Atlas,
     splits: int = 3,
     progress: ProgressCallback = ignore_progress,
-    **options: Any,
+    *,
+    dim: int = 32,
+    coefficients: int = 9,
 ) -> list[dict[str, Any]]:
     """Divide an atlas in random halves, and predict each half by a cube of the other
-    one, built with options of `uplift.build`; return the mean errors by method.
+    one, in linear sRGB under D65; return the mean errors by method.
 
     The prior, and the methods that know the library, do not know the families that
     contain spectra of the atlas or look-alikes of many of them. Methods that do not
@@ -70,10 +72,11 @@ def holdout(
     left_out = families_like(spectra_of(atlas, sensor))
     halves = list(divided(entries, left_out, sensor, seeds=splits))
     all_entries = [Task(sensor, Atlas(), spectra_of(entries, sensor), left_out)]
+    of_size = partial(cube, dim=dim, coefficients=coefficients)
     methods: dict[str, Prepare] = {
-        HALF: cube(atlas=True, **options),
-        NO_ATLAS: cube(**options),
-        SIGMOID: cube(**options | {"model": "sigmoid"}),
+        HALF: of_size(atlas=True),
+        NO_ATLAS: of_size(),
+        SIGMOID: of_size(model="sigmoid"),
         LOCAL_LINEAR: local_linear.prepare,
     }
     if len(all_entries[0].library):
