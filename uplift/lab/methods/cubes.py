@@ -7,12 +7,11 @@ system's compiler. A call takes all colours, on one thread.
 """
 
 import ctypes
-import re
 import shutil
 import subprocess
 import tempfile
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import asdict, dataclass, replace
 from functools import lru_cache, partial
 from pathlib import Path
 from typing import Any
@@ -36,6 +35,7 @@ from uplift.lab.method import (
 from uplift.lab.runner import Prepare, Task
 from uplift.lab.timing import stopwatch
 from uplift.lookup import MODES, Cube, load
+from uplift.models import Moments
 from uplift.pipeline.build import build
 
 KEPT = 4
@@ -197,45 +197,73 @@ def load_library(path: Path) -> Uplift:
     return uplift
 
 
-_CUBE = re.compile(r"([a-z]+)(\d*)-(\d+)(-atlas)?")
+@dataclass(frozen=True)
+class CubeKind:
+    """Model, coefficients and nodes of a cube, and whether it has an atlas."""
+
+    model: str
+    coefficients: int
+    dim: int
+    atlas: bool = False
+
+    @property
+    def name(self) -> str:
+        """Return the name for the command line."""
+        count = self.coefficients if self.model == Moments.name else ""
+        return f"{self.model}{count}-{self.dim}{'-atlas' if self.atlas else ''}"
+
+    @property
+    def title(self) -> str:
+        """Return the name to display."""
+        count = f" {self.coefficients}" if self.model == Moments.name else ""
+        return f"{self.model}{count}, {self.dim}³{', atlas' if self.atlas else ''}"
+
+    @property
+    def command(self) -> str:
+        """Return the command that builds the cube."""
+        words = ["uplift build"]
+        if self.atlas:
+            words.append("--atlas FILE")
+        words.append(f"--dim {self.dim}")
+        if self.model == Moments.name:
+            words.append(f"--coefficients {self.coefficients}")
+        else:
+            words.append(f"--model {self.model}")
+        return " ".join(words)
 
 
 def in_python(
-    cube: str, mode: str, prepare: Callable[..., PreparedMethod] = prepare_lookup
+    cube: CubeKind, mode: str, prepare: Callable[..., PreparedMethod] = prepare_lookup
 ) -> Method:
-    """Describe `Cube.reflectance` in a mode, for a cube of `CUBES`."""
-    ((model, count, dim, atlas),) = _CUBE.findall(cube)
-    options = {"model": model, "dim": int(dim), "atlas": bool(atlas)}
-    if count:
-        options["coefficients"] = int(count)
+    """Describe `Cube.reflectance` in a mode."""
     # Nodes of all modes are exact; colours between them are not in ``moments`` and
     # ``nearest``, and refined sigmoids.
-    exact = mode in ("spectra", "bulk") or (mode == "refined" and count)
+    is_exact = mode in ("spectra", "bulk")
+    if mode == "refined":
+        is_exact = cube.model == Moments.name
     return Method(
-        method=f"{cube}-{mode}",
-        title=f"{model} {count}".rstrip()
-        + f", {dim}³{', atlas' * bool(atlas)}, {mode}",
-        label=f"{count or 3} · {dim}³ {mode}",
-        family=f"uplift, {model}{' with atlas' * bool(atlas)}",
+        method=f"{cube.name}-{mode}",
+        title=f"{cube.title}, {mode}",
+        label=f"{cube.coefficients} · {cube.dim}³ {mode}",
+        family=f"uplift, {cube.model}{' with atlas' if cube.atlas else ''}",
         source="this package",
         mode=mode,
-        build=f"uplift build {'--atlas FILE ' * bool(atlas)}--dim {dim} "
-        + (f"--coefficients {count}" if count else f"--model {model}"),
+        build=cube.command,
         call=f'cube.reflectance(rgb, mode="{mode}")',
-        prepare=partial(prepare, mode=mode, **options),
+        prepare=partial(prepare, mode=mode, **asdict(cube)),
         reference_sensor=ours,
-        claimed_error=0.01 if exact else None,
+        claimed_error=0.01 if is_exact else None,
     )
 
 
-def in_single(cube: str, mode: str) -> Method:
+def in_single(cube: CubeKind, mode: str) -> Method:
     """Describe `Cube.reflectance` in a mode, in float32."""
     prepare = partial(prepare_lookup, dtype="float32")
     call = f'cube.reflectance(rgb, mode="{mode}", dtype="float32")'
     return in_float32(replace(in_python(cube, mode, prepare), call=call))
 
 
-def in_bulk(cube: str) -> Method:
+def in_bulk(cube: CubeKind) -> Method:
     """Describe `uplift.bulk`, by JAX."""
     python = in_python(cube, "bulk", prepare_bulk)
     return replace(
@@ -246,7 +274,7 @@ def in_bulk(cube: str) -> Method:
     )
 
 
-def in_c(cube: str, mode: str) -> Method:
+def in_c(cube: CubeKind, mode: str) -> Method:
     """Describe the exported program of a mode."""
     python = in_python(cube, mode, prepare_c)
     return replace(
@@ -265,7 +293,7 @@ def in_c(cube: str, mode: str) -> Method:
     )
 
 
-LOOKUPS: dict[str, Callable[[str], Method]] = {
+LOOKUPS: dict[str, Callable[[CubeKind], Method]] = {
     **{mode: partial(in_python, mode=mode) for mode in MODES},
     **{f"{mode}-float32": partial(in_single, mode=mode) for mode in MODES},
     **{f"c-{mode}": partial(in_c, mode=mode) for mode in MODES},
@@ -273,26 +301,26 @@ LOOKUPS: dict[str, Callable[[str], Method]] = {
 }
 _BOTH = "spectra spectra-float32 moments moments-float32 refined refined-float32"
 CUBES = {
-    "moments3-32-atlas": "spectra bulk",
-    "moments5-32-atlas": "spectra bulk",
-    "moments9-8-atlas": "spectra moments refined bulk",
-    "moments9-16-atlas": "spectra moments bulk",
-    "moments9-32-atlas": f"{_BOTH} bulk c-moments c-spectra",
-    "moments9-64-atlas": "spectra moments bulk",
-    "moments13-32-atlas": "spectra bulk",
-    "moments17-32-atlas": "spectra bulk",
-    "moments17-64-atlas": "spectra bulk",
-    "moments9-8": "spectra moments refined bulk",
-    "moments9-16": "spectra moments bulk",
-    "moments9-32": f"{_BOTH} bulk c-moments c-spectra",
-    "moments9-64": "spectra moments nearest bulk",
-    "sigmoid-32-atlas": "spectra",
-    "sigmoid-8": "spectra moments refined",
-    "sigmoid-16": "spectra moments",
-    "sigmoid-32": f"{_BOTH} c-moments c-spectra",
-    "sigmoid-64": "spectra moments c-moments",
+    CubeKind("moments", 3, 32, atlas=True): "spectra bulk",
+    CubeKind("moments", 5, 32, atlas=True): "spectra bulk",
+    CubeKind("moments", 9, 8, atlas=True): "spectra moments refined bulk",
+    CubeKind("moments", 9, 16, atlas=True): "spectra moments bulk",
+    CubeKind("moments", 9, 32, atlas=True): f"{_BOTH} bulk c-moments c-spectra",
+    CubeKind("moments", 9, 64, atlas=True): "spectra moments bulk",
+    CubeKind("moments", 13, 32, atlas=True): "spectra bulk",
+    CubeKind("moments", 17, 32, atlas=True): "spectra bulk",
+    CubeKind("moments", 17, 64, atlas=True): "spectra bulk",
+    CubeKind("moments", 9, 8): "spectra moments refined bulk",
+    CubeKind("moments", 9, 16): "spectra moments bulk",
+    CubeKind("moments", 9, 32): f"{_BOTH} bulk c-moments c-spectra",
+    CubeKind("moments", 9, 64): "spectra moments nearest bulk",
+    CubeKind("sigmoid", 3, 32, atlas=True): "spectra",
+    CubeKind("sigmoid", 3, 8): "spectra moments refined",
+    CubeKind("sigmoid", 3, 16): "spectra moments",
+    CubeKind("sigmoid", 3, 32): f"{_BOTH} c-moments c-spectra",
+    CubeKind("sigmoid", 3, 64): "spectra moments c-moments",
 }
-"""Models, coefficients and nodes of cubes, and their lookups."""
+"""Cubes and their lookups."""
 METHODS: list[Method] = []
 for _cube, _lookups in CUBES.items():
     METHODS += [LOOKUPS[name](_cube) for name in _lookups.split()]
