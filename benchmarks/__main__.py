@@ -17,22 +17,23 @@ from pathlib import Path
 from benchmarks import ROOT, read_answers
 from uplift.lab.timing import ONE_THREAD, commit_time
 
-CHILD = """
+STALE = "stale"
+"""In place of the names of questions: those whose answers are not of this commit."""
+CHILD = f"""
 import sys
 import benchmarks
 
 page, *names = sys.argv[1:]
-if names == ["stale"]:
+if names == ["{STALE}"]:
     names = benchmarks.stale(page)
 sys.exit(benchmarks.measure(page, names or benchmarks.questions(page)) > 0)
 """
-STALE = "stale"
-"""In place of the names of questions: those whose answers are not of this commit."""
 UNTIMED = frozenset(
     [
         "advice",
         "cameras",
         "determinism",
+        "emission",
         "fidelity",
         "install",
         "stability",

@@ -66,8 +66,8 @@ def predict(
     power = np.empty_like(lamps.power)
     expected = np.empty(len(lamps))
     groups = np.array(list(map(group, lamps.names)))
-    for one in np.unique(groups):
-        rows = np.flatnonzero(groups == one)
+    for name in np.unique(groups):
+        rows = np.flatnonzero(groups == name)
         names = [lamps.names[row] for row in rows]
         table = uplift.build_emission(without=names, **size)
         rgb = table.rgb(lamps.power[rows])

@@ -79,7 +79,8 @@ def read_atlases() -> dict[str, Atlas]:
 def spectra(name: str) -> Atlas:
     """Read a set of measured spectra."""
     names = SHIPPED if name == MIXTURE else [name]
-    return read_atlas(*(FURTHER.get(one, ATLASES / f"{one}.txt") for one in names))
+    files = [FURTHER.get(member, ATLASES / f"{member}.txt") for member in names]
+    return read_atlas(*files)
 
 
 @cache

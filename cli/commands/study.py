@@ -238,7 +238,7 @@ def held_out(
     `uplift.lab.study.stability` takes other ones.
 
     Atlases are none, the ColorChecker, and three difficult synthetic ones: crowded,
-    spiky and noisy. --output writes a heat map of the largest residuals, as PNG.
+    spiky and noisy. --output writes the largest residual of each build, as PNG.
 
     \b
     Examples:
