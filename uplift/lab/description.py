@@ -1,4 +1,4 @@
-"""What a chart says of a method; a stored chart is read without any of them."""
+"""Texts about a method: a stored chart is read without the methods themselves."""
 
 from dataclasses import dataclass
 
