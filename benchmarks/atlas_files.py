@@ -11,7 +11,9 @@ import numpy as np
 
 from benchmarks import Row
 from tests.atlas.vendor_files import VENDORS, Vendor, sample
-from uplift.atlas import Atlas, known_formats, read_atlas
+from uplift.atlas.atlas import Atlas
+from uplift.atlas.formats import known_formats
+from uplift.atlas.sources import read_atlas
 from uplift.common.errors import UpliftWarning
 
 UPLIFT = "uplift"

@@ -11,14 +11,17 @@ from scipy.optimize import least_squares
 
 from benchmarks import Row
 from benchmarks.materials import spectra
-from uplift.colorimetry import Light, Sensor, lab, observer, solid, tables
+from uplift.colorimetry import observer, tables
 from uplift.colorimetry.camera import CAMERA
+from uplift.colorimetry.delta_e import lab
+from uplift.colorimetry.object_colours import solid
+from uplift.colorimetry.sensor import Light, Sensor
 from uplift.common.arrays import Array
 from uplift.lab.look_alikes import families_like
 from uplift.lab.method import PreparedMap
 from uplift.lab.methods.cubes import cube
 from uplift.lab.runner import Prepare, Task, divided, measure, spectra_of
-from uplift.lattice import Lattice, axis_nodes
+from uplift.lattice.lattice import Lattice, axis_nodes
 
 ATLAS = "macbeth"
 LIGHTS = ("D65", "A")

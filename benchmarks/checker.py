@@ -6,9 +6,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from benchmarks import MACBETH
-from uplift.atlas import on_grid, read_atlas
-from uplift.colorimetry import in_unit_cube, observer
+from uplift.atlas.resampling import on_grid
+from uplift.atlas.sources import read_atlas
+from uplift.colorimetry import observer
 from uplift.colorimetry.gamut import SRGB
+from uplift.colorimetry.sensor import in_unit_cube
 from uplift.common.arrays import Array
 from uplift.extras.colour.srgb import to_display_codes
 from uplift.extras.pages.marks import Mark, picture

@@ -14,8 +14,8 @@ import numpy as np
 from benchmarks import DOCS, Row
 from benchmarks.programs import compile_c, output
 from uplift.common.arrays import Array, Values
-from uplift.cube import CubeData, EntrySpectra
-from uplift.extras.export import write_program
+from uplift.cube.data import CubeData, EntrySpectra
+from uplift.extras.export.program import write_program
 from uplift.extras.export.runtime import HEADER, write_header
 from uplift.extras.files.csv import csv_text
 from uplift.extras.images.processes import call_in_child
@@ -28,8 +28,8 @@ from uplift.extras.report.conformance import (
 )
 from uplift.extras.report.conformance_chart import make_chart
 from uplift.extras.report.conformance_results import spectra_wavelengths
-from uplift.lookup import Cube, load
-from uplift.models import Moments
+from uplift.lookup.cube import Cube, load
+from uplift.models.moments import Moments
 
 KIT = DOCS / "conformance"
 CUBE = KIT / "conformance.uplift"

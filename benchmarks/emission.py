@@ -10,7 +10,8 @@ import numpy as np
 
 import uplift
 from benchmarks import Row, summary
-from uplift.atlas import on_grid, read_atlas
+from uplift.atlas.resampling import on_grid
+from uplift.atlas.sources import read_atlas
 from uplift.colorimetry import observer
 from uplift.colorimetry.illuminants import black_body
 from uplift.common.arrays import Array
@@ -20,7 +21,8 @@ from uplift.extras.emission.lamps import known_lamps
 from uplift.extras.emission.lattice import chromaticity
 from uplift.extras.emission.prior import fit_lamp_prior, relit_delta_e
 from uplift.fit.solver import solve
-from uplift.models import Sigmoid, forward_map
+from uplift.models.minimum_norm import forward_map
+from uplift.models.sigmoid import Sigmoid
 
 FAMILIES = {
     "daylight": r"[BC]|I?D\d\d",

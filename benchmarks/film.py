@@ -28,12 +28,11 @@ from uplift.colorimetry.observer import (
     sensor,
 )
 from uplift.common.arrays import Array
-from uplift.extras.export import write_film
-from uplift.extras.export.film import CAT16, LAYER_WIDTH, LAYERS
+from uplift.extras.export.film import CAT16, LAYER_WIDTH, LAYERS, write_film
 from uplift.extras.pages.figure import write_figure
 from uplift.extras.pages.marks import Mark
 from uplift.extras.pages.panels import draw
-from uplift.extras.scene.passes import scaled_power
+from uplift.extras.scene.passes.passes import scaled_power
 
 FILM_LIGHT = "D55"
 WIDTH = 2.7

@@ -13,15 +13,16 @@ import numpy as np
 import uplift
 from benchmarks import DOCS, Row
 from benchmarks.checker import chart, chart_panel
-from uplift.colorimetry import delta_e_rgb
+from uplift.colorimetry.delta_e import delta_e_rgb
 from uplift.common.arrays import Array
 from uplift.common.compilation import compiled
 from uplift.extras.pages.figure import write_figure
 from uplift.extras.pages.marks import line
 from uplift.extras.pages.panels import Axis, Panel, draw
-from uplift.extras.photographs import photograph
+from uplift.extras.photographs.photograph import photograph
 from uplift.lab.timing import time_call
-from uplift.lookup import Cube, bulk
+from uplift.lookup import bulk
+from uplift.lookup.cube import Cube
 from uplift.lookup.interpolate import is_inexact
 from uplift.lookup.traceable import TraceableCube, evaluate, traceable
 

@@ -15,11 +15,10 @@ import uplift
 from benchmarks import CUBES, MACBETH, ROOT, Row
 from benchmarks.programs import Words, compile_c, numbers, program_version
 from uplift.common.arrays import Array
-from uplift.extras.export import write_program
 from uplift.extras.export.module import write_module
+from uplift.extras.export.program import write_program
 from uplift.extras.export.runtime import HEADER, write_header
-from uplift.lookup import Cube, load
-from uplift.lookup.cube import PACKAGED
+from uplift.lookup.cube import PACKAGED, Cube, load
 from uplift.lookup.interpolate import is_inexact
 
 PORTABLE = ("-O3", "-march=x86-64-v3", "-fno-math-errno", "-fno-trapping-math")

@@ -13,7 +13,7 @@ import uplift
 from benchmarks import CUBES, DOCS, Row
 from benchmarks.browser import SETTLE, SHIFT, browser
 from benchmarks.materials import LARGE, SPLITS, other_halves
-from uplift.colorimetry import delta_e_rgb, lab
+from uplift.colorimetry.delta_e import delta_e_rgb, lab
 from uplift.colorimetry.gamut import SRGB
 from uplift.colorimetry.likely_errors import mahalanobis
 from uplift.colorimetry.observer import display_sensors, light
@@ -25,7 +25,7 @@ from uplift.extras.pages.marks import patches
 from uplift.extras.pages.panels import Panel, draw
 from uplift.extras.pages.plots import plot_bounds
 from uplift.extras.report.look_page import page
-from uplift.lookup import Cube
+from uplift.lookup.cube import Cube
 from uplift.samples import sample_path
 
 LIGHTS = ("A", "FL11", "HP1", "LED-RGB1")

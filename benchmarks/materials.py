@@ -13,12 +13,14 @@ import numpy as np
 
 import uplift
 from benchmarks import ATLAS_FILES, ATLASES, ROOT
-from uplift.atlas import Atlas, Entry, read_atlas
-from uplift.colorimetry import in_unit_cube, observer
+from uplift.atlas.atlas import Atlas, Entry
+from uplift.atlas.sources import read_atlas
+from uplift.colorimetry import observer
+from uplift.colorimetry.sensor import in_unit_cube
 from uplift.common.arrays import Array, Indices
 from uplift.lab.look_alikes import families_like
 from uplift.lab.runner import Task, divided, spectra_of
-from uplift.lookup import Cube
+from uplift.lookup.cube import Cube
 
 FURTHER = {"munsell": ROOT / "out" / "munsell.csv"}
 """Files of large sets that cannot be redistributed: the 1,269 chips of the Munsell

@@ -7,8 +7,8 @@ import numpy as np
 
 import uplift
 from benchmarks import DOCS, MACBETH, Row, read_reference
-from uplift.atlas import on_grid
-from uplift.colorimetry import delta_e_1976, lab
+from uplift.atlas.resampling import on_grid
+from uplift.colorimetry.delta_e import delta_e_1976, lab
 from uplift.common.arrays import Array
 from uplift.extras.pages.figure import write_figure
 from uplift.extras.pages.marks import Mark, line

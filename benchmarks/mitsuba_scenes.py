@@ -10,7 +10,7 @@ import numpy as np
 from benchmarks import Row
 from uplift.colorimetry import observer
 from uplift.common.arrays import Array
-from uplift.extras.scene.passes import scaled_power
+from uplift.extras.scene.passes.passes import scaled_power
 
 VARIANT = "scalar_spectral"
 """The spectral variant that does not need LLVM."""
@@ -22,7 +22,7 @@ def start_mitsuba(variant: str = VARIANT) -> str:
     """Select the variant and register the plug-ins; return Mitsuba's version."""
     import mitsuba
 
-    from uplift.extras.mitsuba import register
+    from uplift.extras.mitsuba.plugin import register
 
     mitsuba.set_variant(variant)
     if variant.endswith("spectral"):

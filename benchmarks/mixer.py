@@ -16,12 +16,12 @@ from benchmarks.mixtures import Mixtures, by_spectra, draw_ramps, of_pairs, ramp
 from benchmarks.programs import compile_c, numbers, program_version
 from uplift.common.arrays import Array
 from uplift.extras.colour.srgb import decode
-from uplift.extras.paint import dispersive
 from uplift.extras.paint.bands import REALISED
 from uplift.extras.paint.mixer_programs import write_mixer
 from uplift.extras.paint.optics import average_areas
+from uplift.extras.paint.pigments import dispersive
 from uplift.extras.paint.rgb_mixer import DIM, make_mixer
-from uplift.lookup import Cube
+from uplift.lookup.cube import Cube
 
 FOLDER = Path(__file__).parent
 COMPILERS = ("gcc", "clang")

@@ -17,12 +17,16 @@ from benchmarks.mixtures import (
     ramp_between,
 )
 from uplift.extras.colour.srgb import hex_codes
-from uplift.extras.paint import dispersive
 from uplift.extras.paint.optics import average_areas
-from uplift.extras.paint.pigments import CONSTANT, SQUARE_ROOT, PowerOfReflectance
+from uplift.extras.paint.pigments import (
+    CONSTANT,
+    SQUARE_ROOT,
+    PowerOfReflectance,
+    dispersive,
+)
 from uplift.extras.paint.rgb_mixer import make_mixer
 from uplift.extras.paint.theories import mixers
-from uplift.lookup import Cube
+from uplift.lookup.cube import Cube
 
 ARTISTS = ("#002185", "#fcd200")
 """Cobalt blue and Hansa yellow, as Mixbox's table has them."""

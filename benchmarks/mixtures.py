@@ -11,14 +11,15 @@ from pathlib import Path
 import numpy as np
 
 from benchmarks import read_reference
-from uplift.colorimetry import Sensor, delta_e_rgb
+from uplift.colorimetry.delta_e import delta_e_rgb
+from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Array, Indices
 from uplift.extras.colour.srgb import decode, encode, parse_colour
 from uplift.extras.pages.plots import plot_strips
 from uplift.extras.paint.coats import ramp
 from uplift.extras.paint.optics import average_areas
 from uplift.extras.paint.pigments import Pigment, Scattering, from_opaque
-from uplift.lookup import Cube
+from uplift.lookup.cube import Cube
 
 RATIOS = np.array([(0.75, 0.25), (0.5, 0.5), (0.25, 0.75)])
 """Shares of the mixtures of paints in three bands."""

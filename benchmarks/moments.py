@@ -8,7 +8,8 @@ import numpy as np
 
 from benchmarks import DOCS, MACBETH, Row, with_printed
 from benchmarks.materials import SENSOR, inside, read_atlases
-from uplift.atlas import merge, read_atlas
+from uplift.atlas.atlas import merge
+from uplift.atlas.sources import read_atlas
 from uplift.extras.colour.light_sets import REPORT_LIGHTS
 from uplift.lab.methods.cubes import cube
 from uplift.lab.runner import Task, measure, named_lights

@@ -15,23 +15,23 @@ import uplift
 from benchmarks import DOCS, REFERENCE, Row, summary
 from benchmarks.mixtures import Mixtures, acrylics, draw_ramps
 from benchmarks.programs import compile_c, numbers
-from uplift.colorimetry import delta_e_rgb
+from uplift.colorimetry.delta_e import delta_e_rgb
 from uplift.common.arrays import Array
 from uplift.extras.colour.srgb import decode, encode
 from uplift.extras.pages.html import resource
-from uplift.extras.paint import (
-    Paints,
-    PaintSamples,
-    PaintTarget,
-    advise_samples,
-    fit_paints,
-    match,
-    read_paints,
-)
 from uplift.extras.paint.coats import ramp
+from uplift.extras.paint.paint_advice import advise_samples
+from uplift.extras.paint.paint_fit import fit_paints
 from uplift.extras.paint.paint_page import SCRIPTS, page_numbers, write_page
 from uplift.extras.paint.paint_program import few_samples, write_program
-from uplift.extras.paint.paint_samples import MeasuredColours, MeasuredSpectra
+from uplift.extras.paint.paint_samples import (
+    MeasuredColours,
+    MeasuredSpectra,
+    PaintSamples,
+)
+from uplift.extras.paint.paints import Paints
+from uplift.extras.paint.paints_file import read_paints
+from uplift.extras.paint.recipes import PaintTarget, match
 from uplift.lab.timing import stopwatch
 
 INVENTED = read_paints(REFERENCE / "invented_paints.toml")

@@ -9,19 +9,17 @@ from itertools import product
 import numpy as np
 
 from benchmarks import ATLAS_FILES, DOCS, Row, summary
-from uplift.atlas import on_grid, read_atlas
-from uplift.colorimetry import Sensor, delta_e_rgb, observer
+from uplift.atlas.resampling import on_grid
+from uplift.atlas.sources import read_atlas
+from uplift.colorimetry import observer
+from uplift.colorimetry.delta_e import delta_e_rgb
+from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Array
-from uplift.extras.palette import (
-    design,
-    illuminant,
-    matrix,
-    read_palette,
-    standard_model,
-)
-from uplift.extras.palette.colours import exposure, screen_matrix
-from uplift.extras.palette.factor import FactorModel, linear_product
+from uplift.extras.palette.colours import exposure, illuminant, screen_matrix
+from uplift.extras.palette.design import design, matrix
+from uplift.extras.palette.factor import FactorModel, linear_product, standard_model
 from uplift.extras.palette.plots import plot_matrix, plot_spectra
+from uplift.extras.palette.spec import read_palette
 from uplift.samples import sample_path
 
 LIGHTS = ("D65", "D50", "A", "E", "FL2", "FL7", "FL11", "LED-B3", "HP1")

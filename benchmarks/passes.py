@@ -23,11 +23,13 @@ from uplift.extras.colour.light_sets import PALETTE_LIGHTS
 from uplift.extras.palette.factor import factor_model
 from uplift.extras.scene import passes as library
 from uplift.extras.scene import wavelengths
-from uplift.extras.scene.passes import Bands, Materials, Passes
+from uplift.extras.scene.passes.bands import CHANNELS, Bands
 from uplift.extras.scene.passes.browser_page import page
 from uplift.extras.scene.passes.choice import judging_paths
+from uplift.extras.scene.passes.materials import Materials
+from uplift.extras.scene.passes.passes import Passes
 from uplift.extras.texture.uplifter import Converter
-from uplift.fit import shipped_library
+from uplift.fit.families import shipped_library
 from uplift.lab.timing import time_call
 from uplift.samples import sample_path
 
@@ -94,7 +96,7 @@ def other_bases() -> Iterator[Row]:
     """Yield the errors of other choices of as many numbers as two passes have, decoded
     in the same way.
     """
-    count = 2 * library.CHANNELS
+    count = 2 * CHANNELS
     training = materials().training[:: -(-len(materials().training) // MATERIALS)]
     fine = wavelengths.grid()
     table = observer.grid()

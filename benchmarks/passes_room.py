@@ -16,13 +16,16 @@ import numpy as np
 from benchmarks import DOCS, Row, mitsuba_scenes, summary
 from benchmarks.checker import Layout, chart, photo
 from benchmarks.passes import without_family
-from uplift.colorimetry import delta_e_2000, lab, observer
+from uplift.colorimetry import observer
+from uplift.colorimetry.delta_e import delta_e_2000, lab
 from uplift.common.arrays import Array
 from uplift.extras.images.processes import call_in_child
 from uplift.extras.pages.figure import write_figure
 from uplift.extras.pages.marks import error_map
 from uplift.extras.pages.panels import Panel, draw
-from uplift.extras.scene import passes
+from uplift.extras.scene.passes.bands import CHANNELS
+from uplift.extras.scene.passes.choice import choose
+from uplift.extras.scene.passes.passes import scaled_power
 
 SPECTRAL = mitsuba_scenes.VARIANT
 LAMPS = ("D65", "HP1")
@@ -119,7 +122,7 @@ def all_numbers(counts: Sequence[int]) -> dict[str, Numbers]:
     the paints, and of spectra.
     """
     spectra = np.clip(chart().measured, 0, 1)
-    powers = np.stack([passes.scaled_power(name) for name in LAMPS])
+    powers = np.stack([scaled_power(name) for name in LAMPS])
     screen = observer.sensor()
     to_xyz = observer.matching_functions().T
     rgb_lamps = np.maximum(powers @ to_xyz.T @ screen.xyz_to_rgb.T, 0)
@@ -129,7 +132,7 @@ def all_numbers(counts: Sequence[int]) -> dict[str, Numbers]:
     }
     materials = without_family(FAMILY, spectra)
     for count in counts:
-        chosen = passes.choose(materials, LAMPS, count)
+        chosen = choose(materials, LAMPS, count)
         lamps = np.stack([light.numbers for light in chosen.lights])
         surfaces = chosen.reflectance_numbers(spectra)
         numbers[f"{count}"] = Numbers(surfaces, lamps, chosen.to_xyz)
@@ -140,7 +143,7 @@ def render(numbers: Numbers, variant: str, size: int, samples: int) -> Rendering
     """Render all passes by a variant of Mitsuba, and decode."""
     mitsuba_scenes.start_mitsuba(variant)
     surface = light = mitsuba_scenes.rgb
-    width = passes.CHANNELS
+    width = CHANNELS
     film = mitsuba_scenes.film(size, size, "rgb")
     if variant == SPECTRAL:
         surface, light = mitsuba_scenes.spectrum, mitsuba_scenes.radiance

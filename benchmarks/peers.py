@@ -20,8 +20,10 @@ from uplift.colorimetry import observer
 from uplift.common.arrays import Array
 from uplift.lab.study.sensitivity import node_spectra
 from uplift.lab.timing import time_call, timing_stats
-from uplift.lattice import Lattice, axis_nodes
-from uplift.models import Moments, Sigmoid, evaluate
+from uplift.lattice.lattice import Lattice, axis_nodes
+from uplift.models.model import evaluate
+from uplift.models.moments import Moments
+from uplift.models.sigmoid import Sigmoid
 
 THRESHOLD = 1e-4
 """Largest |linear RGB| between a fitted spectrum and its colour: the threshold of

@@ -11,7 +11,7 @@ import numpy as np
 import uplift
 from benchmarks import MACBETH, UPLIFT, Row
 from benchmarks.materials import MIXTURE, SENSOR, materials
-from uplift.atlas import Atlas, Entry
+from uplift.atlas.atlas import Atlas, Entry
 from uplift.common.arrays import Array
 from uplift.lab.timing import time_call, time_command
 

@@ -15,7 +15,7 @@ from benchmarks import MACBETH, UPLIFT, Row
 from benchmarks.pictures import pictures
 from uplift.extras.texture.scene_colours import Images
 from uplift.lab.timing import run_command, time_call
-from uplift.lookup import Cube
+from uplift.lookup.cube import Cube
 from uplift.samples import copy_samples
 
 DIM = 64

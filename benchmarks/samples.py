@@ -10,16 +10,18 @@ import numpy as np
 import uplift
 from benchmarks import DOCS, Row
 from benchmarks.materials import inside, spectra
-from uplift.colorimetry import delta_e_spectra, observer
+from uplift.colorimetry import observer
+from uplift.colorimetry.delta_e import delta_e_spectra
 from uplift.colorimetry.gamut import SRGB
 from uplift.common.arrays import Array
 from uplift.extras.colour.srgb import to_display_codes
 from uplift.extras.pages.figure import write_figure
 from uplift.extras.pages.marks import line, picture
 from uplift.extras.pages.panels import Axis, Panel, draw, spectra_panel
-from uplift.extras.photographs import photograph, prepare_samples
+from uplift.extras.photographs.photograph import photograph
+from uplift.extras.photographs.samples import prepare_samples
 from uplift.lab.timing import TimingStats, time_call
-from uplift.lookup import Cube
+from uplift.lookup.cube import Cube
 from uplift.lookup.errors_under_lights import evidence
 
 LIGHTS = ("A", "FL2", "FL11", "LED-B3", "HP1")

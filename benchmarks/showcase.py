@@ -15,8 +15,9 @@ import uplift
 from benchmarks import DOCS, Row, summary
 from benchmarks.checker import BACKGROUND, LAYOUT, Place, chart, photo
 from tests.examples import build_wheel, run_lines, unpack
-from uplift.colorimetry import Light, delta_e_2000, lab
+from uplift.colorimetry.delta_e import delta_e_2000, lab
 from uplift.colorimetry.observer import light, sensor
+from uplift.colorimetry.sensor import Light
 from uplift.common.arrays import Array
 from uplift.extras.colour.light_sets import DESCRIPTIONS, RELIGHT_LIGHTS
 from uplift.extras.pages.figure import write_figure

@@ -16,7 +16,7 @@ All are linear in the numbers t of the photographs, three of each, with the sens
 import numpy as np
 
 from uplift.common.arrays import Array
-from uplift.extras.photographs import Noise
+from uplift.extras.photographs.photograph import Noise
 
 COMPONENTS = 6
 """Principal components: as many as two photographs have numbers."""

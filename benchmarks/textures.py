@@ -9,14 +9,15 @@ import numpy as np
 import uplift
 from benchmarks import CUBES, MACBETH, UPLIFT, Row, summary
 from benchmarks.pictures import pictures
-from uplift.colorimetry import delta_e_rgb, observer
+from uplift.colorimetry import observer
+from uplift.colorimetry.delta_e import delta_e_rgb
 from uplift.common.arrays import Array
 from uplift.extras import texture
 from uplift.extras.mitsuba.texels import Samples, read_texels
 from uplift.extras.texture.uplifter import PixelEncoding
 from uplift.lab.timing import time_command
-from uplift.lookup import blockwise
-from uplift.models import evaluate
+from uplift.lookup.blocks import blockwise
+from uplift.models.model import evaluate
 from uplift.samples import sample_path
 
 GRIDS = ((380, 780, 5), (400, 700, 5), (380, 780, 10), (400, 700, 10), (400, 700, 20))

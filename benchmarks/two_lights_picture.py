@@ -12,13 +12,15 @@ from benchmarks import DOCS, Row, summary
 from benchmarks.checker import photo
 from benchmarks.materials import SENSOR, other_halves
 from benchmarks.still_life import BALLS, MATERIALS, still_life
-from uplift.colorimetry import delta_e_spectra, observer, rgb_to_lab
+from uplift.colorimetry import observer
+from uplift.colorimetry.delta_e import delta_e_spectra, rgb_to_lab
 from uplift.common.arrays import Array, Indices, Mask
 from uplift.extras.pages.figure import ACCENT, GREY, INK, write_figure
 from uplift.extras.pages.marks import error_map, line
 from uplift.extras.pages.panels import Axis, Panel, draw
-from uplift.extras.photographs import Noise, Photographs, photograph, prepare
-from uplift.lookup import Cube
+from uplift.extras.photographs.answers import Photographs, prepare
+from uplift.extras.photographs.photograph import Noise, photograph
+from uplift.lookup.cube import Cube
 
 SET = "cie2017"
 DIM = 32

@@ -6,7 +6,7 @@ import numpy as np
 
 import uplift
 from benchmarks import ATLAS_FILES, DOCS, Row, summary
-from uplift.atlas import on_grid
+from uplift.atlas.resampling import on_grid
 from uplift.extras.pages.figure import write_figure
 from uplift.extras.pages.marks import line
 from uplift.extras.pages.panels import Axis, Panel, draw

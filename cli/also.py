@@ -22,8 +22,8 @@ from .option_types import distinct_light
 
 if TYPE_CHECKING:
     from uplift.colorimetry.illuminants import Illuminant
-    from uplift.extras.photographs import PhotographedColour
-    from uplift.lookup import Cube
+    from uplift.extras.photographs.colour import PhotographedColour
+    from uplift.lookup.cube import Cube
 
 Value = TypeVar("Value")
 LARGEST_CODE = 255
@@ -134,8 +134,9 @@ def photographed_colour(
     """
     import numpy as np
 
-    from uplift.extras.photographs import PhotographedColour, photograph, prepare
-    from uplift.extras.photographs.photograph import rounding_noise
+    from uplift.extras.photographs.answers import prepare
+    from uplift.extras.photographs.colour import PhotographedColour
+    from uplift.extras.photographs.photograph import photograph, rounding_noise
 
     if not source.single:
         raise OptionError(

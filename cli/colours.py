@@ -26,7 +26,7 @@ from .inputs import find_input_space
 from .output.diagnostics import warn
 
 if TYPE_CHECKING:
-    from uplift.colorimetry import Sensor
+    from uplift.colorimetry.sensor import Sensor
     from uplift.common.arrays import Array
     from uplift.extras.colour.spaces import ImageSpace
 
@@ -216,7 +216,7 @@ class ColourSource:
             if space.floats_are_codes:
                 values[~mask] = space.decode(values[~mask])
         elif mask.any():
-            from uplift.lookup import decode_codes
+            from uplift.lookup.blocks import decode_codes
 
             values[mask] = decode_codes(sensor, values[mask])
         matrix = None if space is None else space.matrix_to(sensor)

@@ -15,7 +15,7 @@ from .outputs import check_folder, check_outputs
 
 if TYPE_CHECKING:
     from uplift.extras.report.conformance import Conformance
-    from uplift.lookup import Cube
+    from uplift.lookup.cube import Cube
 
 WORST = 5
 """Number of the worst patches that are named."""
@@ -62,7 +62,7 @@ def judge(
 
 def _load(cube: str | None) -> Cube:
     from uplift.extras.report.conformance_kit import build_cube
-    from uplift.lookup import load
+    from uplift.lookup.cube import load
 
     return build_cube() if cube is None else load(cube)
 

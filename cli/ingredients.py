@@ -16,12 +16,12 @@ from .colours import ColourSource
 from .output.diagnostics import warn
 
 if TYPE_CHECKING:
-    from uplift.atlas import Atlas
-    from uplift.colorimetry import Sensor
+    from uplift.atlas.atlas import Atlas
+    from uplift.colorimetry.sensor import Sensor
     from uplift.common.arrays import Array
     from uplift.extras.colour.spaces import ImageSpace
-    from uplift.extras.paint import Paints
-    from uplift.lookup import Cube
+    from uplift.extras.paint.paints import Paints
+    from uplift.lookup.cube import Cube
 
 PARTS = re.compile(r"\s*([0-9.+-][0-9.,eE+-]*)\s*:(.*)", re.DOTALL)
 CONSTANT_SPECTRA = {"white": 1.0, "black": 0.0}
@@ -90,7 +90,8 @@ class SpectrumResolver:
         """Return the spectrum (N,) of a colour, 'white', 'black' or an entry."""
         import numpy as np
 
-        from uplift.atlas import Atlas, on_grid
+        from uplift.atlas.atlas import Atlas
+        from uplift.atlas.resampling import on_grid
         from uplift.colorimetry.gamut import map_to_gamut
 
         entries = self.cube.data.atlas

@@ -20,9 +20,9 @@ from .output.diagnostics import warn
 from .startup import hide_drawing_notes
 
 if TYPE_CHECKING:
-    from uplift.atlas import Atlas
-    from uplift.colorimetry import Sensor
+    from uplift.atlas.atlas import Atlas
     from uplift.colorimetry.illuminants import Illuminant
+    from uplift.colorimetry.sensor import Sensor
     from uplift.common.arrays import Array
     from uplift.extras.colour.spaces import ImageSpace
     from uplift.extras.texture.picture import Picture
@@ -40,7 +40,7 @@ MAX_SIDE = 960
 
 def atlas_files(files: Sequence[str | Path]) -> Sequence[str | Path]:
     """Return the files of atlases; without any, the default ones."""
-    from uplift.atlas import shipped_atlases
+    from uplift.atlas.sources import shipped_atlases
 
     return (
         files
@@ -51,7 +51,7 @@ def atlas_files(files: Sequence[str | Path]) -> Sequence[str | Path]:
 
 def read_atlases(files: Sequence[str | Path]) -> dict[str, Atlas]:
     """Return atlases, by default the usual ones, by the stems of their files."""
-    from uplift.atlas import read_atlas
+    from uplift.atlas.sources import read_atlas
 
     atlases: dict[str, Atlas] = {}
     for file in atlas_files(files):

@@ -22,10 +22,10 @@ from .output.console import has_colours, make_table, print_json, show
 from .output.diagnostics import warn
 
 if TYPE_CHECKING:
-    from uplift.colorimetry import Sensor
+    from uplift.colorimetry.sensor import Sensor
     from uplift.common.arrays import Array
-    from uplift.extras.paint import Ingredients, Medium
-    from uplift.lookup import Cube
+    from uplift.extras.paint.coats import Ingredients, Medium
+    from uplift.lookup.cube import Cube
 
 MIXTURE_MAPPING = "scale"
 """How mixtures are mapped into the gamut: it keeps the hue of bright ones."""
@@ -51,7 +51,7 @@ class Recipe:
 def read_recipe(resolver: SpectrumResolver, words: Sequence[str], kind: str) -> Recipe:
     import numpy as np
 
-    from uplift.extras.paint import Ingredients
+    from uplift.extras.paint.coats import Ingredients
 
     ingredients = [resolver.ingredient(word, kind) for word in words]
     # What is not in a mixture has no place on its ramp either.
@@ -79,8 +79,7 @@ def mix_ramp(
     import numpy as np
 
     from uplift.colorimetry.gamut import map_to_gamut
-    from uplift.extras.paint import make_coat, mix
-    from uplift.extras.paint.coats import ramp
+    from uplift.extras.paint.coats import make_coat, mix, ramp
 
     cube = recipe.cube
     sensor = recipe.sensor

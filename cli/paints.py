@@ -14,13 +14,10 @@ from .output.console import make_table, paragraph, print_fields, say, show, swat
 if TYPE_CHECKING:
     from uplift.colorimetry.illuminants import Illuminant
     from uplift.common.arrays import Array
-    from uplift.extras.paint import (
-        PaintAdvice,
-        PaintFit,
-        PaintRecipe,
-        Paints,
-        PaintTarget,
-    )
+    from uplift.extras.paint.paint_advice import PaintAdvice
+    from uplift.extras.paint.paint_fit import PaintFit
+    from uplift.extras.paint.paints import Paints
+    from uplift.extras.paint.recipes import PaintRecipe, PaintTarget
 
 WORST = 5
 """Worst samples that are listed."""
@@ -45,9 +42,11 @@ def read_target(
     ground: str | None,
 ) -> PaintTarget:
     """Return what a recipe should match, at the wavelengths of the paints."""
-    from uplift.atlas import Atlas, on_grid, read_atlas
-    from uplift.extras.paint import PaintTarget
-    from uplift.lookup import load
+    from uplift.atlas.atlas import Atlas
+    from uplift.atlas.resampling import on_grid
+    from uplift.atlas.sources import read_atlas
+    from uplift.extras.paint.recipes import PaintTarget
+    from uplift.lookup.cube import load
 
     from .ingredients import SpectrumResolver
 
@@ -121,7 +120,7 @@ def print_paints(paints: Paints) -> None:
     """Print a row for each paint."""
     import numpy as np
 
-    from uplift.extras.paint import strengths
+    from uplift.extras.paint.paints import strengths
 
     own = paints.reflectance(np.eye(len(paints)))
     masstones = _hex(paints, own)
@@ -231,7 +230,7 @@ def elsewhere(
     """Return ΔE00 between a recipe and its target under further lights, the index of
     metamerism.
     """
-    from uplift.colorimetry import delta_e_spectra
+    from uplift.colorimetry.delta_e import delta_e_spectra
     from uplift.extras.colour.light_sets import RELIGHT_LIGHTS
 
     known = {light.name for light in target.lights}

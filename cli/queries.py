@@ -18,11 +18,11 @@ from .inputs import check_range
 from .output.diagnostics import warn
 
 if TYPE_CHECKING:
-    from uplift.colorimetry import Light
     from uplift.colorimetry.illuminants import Illuminant
+    from uplift.colorimetry.sensor import Light
     from uplift.common.arrays import Array
     from uplift.extras.colour.query import QueryBlock, QueryResult
-    from uplift.extras.photographs import PhotographedColour
+    from uplift.extras.photographs.colour import PhotographedColour
 
 PACKAGED = "packaged"
 """Name of the cube that answers without --cube."""
@@ -97,7 +97,7 @@ class Answers:
         lights: Sequence[Illuminant],
         **colours: Any,
     ) -> None:
-        from uplift.lookup import load
+        from uplift.lookup.cube import load
 
         self.source = find_colours(**colours)
         self.single = self.source.single

@@ -13,8 +13,9 @@ from hypothesis import settings
 import uplift
 from tests.helpers import quiet_build
 from tests.process_state import kept_process_state
-from uplift.colorimetry import Sensor, observer
-from uplift.lookup import Cube
+from uplift.colorimetry import observer
+from uplift.colorimetry.sensor import Sensor
+from uplift.lookup.cube import Cube
 
 ROOT = Path(__file__).parents[1]
 # Times on shared machines are unreliable.

@@ -15,10 +15,10 @@ import pytest
 
 import uplift
 from uplift.common.errors import UpliftError, UpliftWarning
-from uplift.cube import CubeData
+from uplift.cube.data import CubeData
 from uplift.cube.schema import POINTS
-from uplift.lattice import ABSENT_VALUES
-from uplift.lookup import Cube
+from uplift.lattice.point_table import ABSENT_VALUES
+from uplift.lookup.cube import Cube
 
 
 @contextlib.contextmanager

@@ -22,7 +22,8 @@ from tests.conftest import ROOT
 from tests.examples import BLOCKS, CUBE, examples, examples_by_page, page_examples
 from tests.helpers import output_of, warns
 from tests.parts import MITSUBA, need
-from uplift.atlas import Format, read_atlas
+from uplift.atlas.formats import Format
+from uplift.atlas.sources import read_atlas
 from uplift.extras import formats
 from uplift.lab.runner import divided
 from uplift.samples import sample_path

@@ -11,7 +11,8 @@ from pathlib import Path
 
 import numpy as np
 
-from uplift.atlas import Atlas, Entry, write_atlas
+from uplift.atlas.atlas import Atlas, Entry
+from uplift.atlas.sources import write_atlas
 
 
 def main(folder: str, output: str) -> None:

@@ -13,7 +13,8 @@ from colour.characterisation import read_training_data_rawtoaces_v1
 from colour.quality import SDS_TCS, SDS_VS
 from colour.quality.cfi2017 import load_TCS_CIE2017
 
-from uplift.atlas import Atlas, Entry, Header, write_atlas
+from uplift.atlas.atlas import Atlas, Entry, Header
+from uplift.atlas.sources import write_atlas
 
 FOLDER = Path(__file__).parents[1] / "atlases"
 LICENCE = (

@@ -16,14 +16,16 @@ import colour
 import numpy as np
 from colour.recovery import otsu2018
 
-from uplift.atlas import read_atlas, resample
-from uplift.colorimetry import observer, rgb_to_lab
+from uplift.atlas.resampling import resample
+from uplift.atlas.sources import read_atlas
+from uplift.colorimetry import observer
+from uplift.colorimetry.delta_e import rgb_to_lab
 from uplift.common.arrays import Array
 from uplift.common.errors import UpliftWarning
-from uplift.fit import Problem, nodes_of
 from uplift.fit.base import TABLE, smooth
 from uplift.fit.families import STEPS
-from uplift.models import Moments
+from uplift.fit.problem import Problem, nodes_of
+from uplift.models.moments import Moments
 
 ROOT = Path(__file__).parents[1]
 FILE = ROOT / "uplift" / "fit" / "library.npz"

@@ -25,7 +25,8 @@ from uplift.common.extensions import register
 
 if TYPE_CHECKING:
     from uplift import bulk
-    from uplift.atlas import Atlas, Entry, read_atlas, write_atlas
+    from uplift.atlas.atlas import Atlas, Entry
+    from uplift.atlas.sources import read_atlas, write_atlas
     from uplift.common.errors import (
         AtlasError,
         ChartFileError,
@@ -47,7 +48,7 @@ if TYPE_CHECKING:
     from uplift.extras.emission.lamps import read_lamp
     from uplift.extras.emission.lookup import EmissionTable, load_emission
     from uplift.extras.looks.look import Look, read_looks
-    from uplift.lookup import Cube, load
+    from uplift.lookup.cube import Cube, load
     from uplift.pipeline.build import build
 
 __all__ = [

@@ -131,7 +131,7 @@ def _advise_light(
     from uplift.extras.scene import second_light
     from uplift.extras.scene.advice import colour_areas
     from uplift.extras.texture.scene_colours import Images
-    from uplift.lookup import load
+    from uplift.lookup.cube import load
 
     paths = expand_patterns(images)
     cube = load(cube_path)
@@ -188,7 +188,7 @@ def _advise_swatches(
     from uplift.extras.colour.srgb import hex_codes
     from uplift.extras.scene import advice
     from uplift.extras.texture.scene_colours import Images
-    from uplift.lookup import load
+    from uplift.lookup.cube import load
 
     paths = expand_patterns(images)
     check_outputs(plot_path, inputs=paths)

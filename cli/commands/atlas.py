@@ -27,9 +27,9 @@ from ..output.console import (
 from ..outputs import check_outputs
 
 if TYPE_CHECKING:
-    from uplift.atlas import Atlas
-    from uplift.colorimetry import Sensor
+    from uplift.atlas.atlas import Atlas
     from uplift.colorimetry.illuminants import Illuminant
+    from uplift.colorimetry.sensor import Sensor
     from uplift.common.arrays import Array
 
 SHIPPED = ("name", "entries", "content", "source", "licence")
@@ -82,7 +82,8 @@ def command(
     force: bool,
     **camera: Any,
 ) -> None:
-    from uplift.atlas import read_atlas, resample, write_atlas
+    from uplift.atlas.resampling import resample
+    from uplift.atlas.sources import read_atlas, write_atlas
     from uplift.colorimetry.observer import sensor
 
     if not files:
@@ -126,7 +127,7 @@ def _csv_row(row: dict[str, Any]) -> Sequence[Any]:
 
 
 def _print_shipped(style: str) -> None:
-    from uplift.atlas import shipped_atlases
+    from uplift.atlas.sources import shipped_atlases
 
     atlases = shipped_atlases()
     if style == "json":
@@ -152,11 +153,11 @@ def _list_entries(
     """List all entries, with reflectances clipped as in a build; return 8-bit sRGB (n,
     3) and `smallest_space`.
     """
-    from uplift.atlas import resample
-    from uplift.colorimetry import in_unit_cube
+    from uplift.atlas.resampling import resample
     from uplift.colorimetry.gamut import SRGB
     from uplift.colorimetry.observer import sensor as make_sensor
     from uplift.colorimetry.observer import smallest_space
+    from uplift.colorimetry.sensor import in_unit_cube
     from uplift.extras.colour.srgb import to_display_codes
 
     resampled = resample(atlas, sensor.wavelengths)

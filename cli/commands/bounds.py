@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from uplift.common.arrays import Array
     from uplift.extras.colour.query import QueryBlock
     from uplift.extras.looks.metamer_bounds import Bounds
-    from uplift.lookup import Cube
+    from uplift.lookup.cube import Cube
 
 
 class Cut(NamedTuple):
@@ -183,7 +183,7 @@ def _print_cut(
 def _cut(answers: Answers, results: QueryBlock, also: Sequence[further.Further]) -> Cut:
     """Compute the bounds of a colour that is known under further lights."""
     from uplift.extras.looks.photograph_bounds import bounds_of_photographs
-    from uplift.extras.photographs import light_errors
+    from uplift.extras.photographs.errors import light_errors
 
     known = further.photographed_colour(
         answers.cube, answers.source, also, (0.0, 0.0), "light"

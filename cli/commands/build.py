@@ -25,8 +25,8 @@ from ..outputs import check_outputs
 from ..startup import enable_jit_cache
 
 if TYPE_CHECKING:
-    from uplift.atlas import Source
-    from uplift.lookup import Cube
+    from uplift.atlas.atlas import Source
+    from uplift.lookup.cube import Cube
 
 ALLOWED_WITH_PLAN = {"plan_path", "output", "debug", "force", "quiet", "verbose"}
 """Parameters that may accompany --plan."""
@@ -318,7 +318,7 @@ def _task_of_atlases(
 
         paths = tuple(map(Path, expand_patterns(images)))
         settings["scene"] = Images(paths, *pixels)
-    from uplift.atlas import read_atlas
+    from uplift.atlas.sources import read_atlas
     from uplift.pipeline.build import build
 
     stated = {

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from rich.text import Text
 
     from uplift.common.progress import ProgressCallback
-    from uplift.lookup import Cube
+    from uplift.lookup.cube import Cube
 
 REBUILDING = ("files", "folders", "update", "style", "quiet", "verbose")
 """Parameters that apply to cubes which are rebuilt."""
@@ -194,7 +194,7 @@ def _check(
     """
     from uplift.extras.report.rebuild import rebuild
     from uplift.extras.report.regression import compare_rebuilt
-    from uplift.lookup import load
+    from uplift.lookup.cube import load
 
     rebuilt = comparison = error = None
     notes: list[UpliftWarning] = []

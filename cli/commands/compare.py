@@ -140,7 +140,8 @@ def command(
 def _write_spectra(
     name: str, files: Sequence[str], lights: Sequence[Illuminant], output: str
 ) -> None:
-    from uplift.atlas import merge, write_atlas
+    from uplift.atlas.atlas import merge
+    from uplift.atlas.sources import write_atlas
     from uplift.extras.scene.representations import find_representation
     from uplift.lab.comparison.compare import make_scene, represent
 

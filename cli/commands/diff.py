@@ -68,7 +68,7 @@ def command(
     from uplift.common.errors import OptionError
     from uplift.common.files import write_text
     from uplift.extras.report.diff import diff_cubes, to_json
-    from uplift.lookup import load
+    from uplift.lookup.cube import load
 
     if tolerance is not None and tolerance < 0:
         raise OptionError(f"tolerance must not be negative, got {tolerance:g}")

@@ -178,9 +178,10 @@ def command(
             "as HP1."
         )
     from uplift.common.files import check_output
-    from uplift.extras.export import check_form, output_files
+    from uplift.extras.export.outputs import output_files
+    from uplift.extras.export.program import check_form
     from uplift.extras.files.outputs import check_outputs
-    from uplift.lookup import load
+    from uplift.lookup.cube import load
 
     form = style
     if "table" in export.options:
@@ -226,8 +227,8 @@ def _export_paints(
 ) -> None:
     """Write paints as a program, a table or a page."""
     from uplift.common.files import check_output
-    from uplift.extras.paint import read_paints
     from uplift.extras.paint.paint_exports import PAINT_EXPORTS
+    from uplift.extras.paint.paints_file import read_paints
 
     by_suffix = {export.suffix: name for name, export in PAINT_EXPORTS.items()}
     style = style or by_suffix.get(Path(output or "").suffix.lower())

@@ -48,8 +48,8 @@ OPTIONS = {
 )
 @options.table_or_json
 def command(cube: str | None, style: str) -> None:
-    from uplift.cube import summarise
-    from uplift.lookup import load
+    from uplift.cube.file import summarise
+    from uplift.lookup.cube import load
 
     print_facts(cube or "packaged cube", summarise(load(cube).data), style)
 

@@ -160,7 +160,9 @@ def info(table_path: str, style: str, plot_path: str | None, force: bool) -> Non
 @options.force
 def export(table_path: str, output: str, table: str | None, force: bool) -> None:
     from uplift.extras.emission.lookup import load_emission
-    from uplift.extras.export import check_form, output_files, write_light_program
+    from uplift.extras.export.light_program import write_light_program
+    from uplift.extras.export.outputs import output_files
+    from uplift.extras.export.program import check_form
 
     language = LANGUAGES.get(Path(output).suffix.lower())
     if language is None:
@@ -209,7 +211,7 @@ def texture(
     **settings: Any,
 ) -> None:
     from uplift.extras.emission.lookup import find_table, load_emission
-    from uplift.extras.texture import Spectrum
+    from uplift.extras.texture.uplifter import Spectrum
 
     if passes is not None:
         options.exclude("--passes", "wavelengths")
@@ -319,7 +321,8 @@ def _pass_numbers(
 ) -> Iterator[tuple[list[float], list[float]]]:
     """Yield linear RGB and the numbers (K,) of passes, at least 0, of each light."""
     from uplift.colorimetry import observer
-    from uplift.extras.scene.passes import read_passes, table_projection
+    from uplift.extras.scene.passes.file import read_passes
+    from uplift.extras.scene.passes.light_images import table_projection
 
     projection = table_projection(read_passes(path))
     for xyz in blocks:

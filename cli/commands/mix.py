@@ -31,11 +31,13 @@ from ..outputs import check_outputs
 from ..startup import enable_jit_cache
 
 if TYPE_CHECKING:
-    from uplift.colorimetry import Sensor
+    from uplift.colorimetry.sensor import Sensor
     from uplift.common.arrays import Array
-    from uplift.extras.paint import Medium, Paints, Surface
+    from uplift.extras.paint.coats import Medium
+    from uplift.extras.paint.optics import Surface
+    from uplift.extras.paint.paints import Paints
     from uplift.extras.paint.pigments import Scattering
-    from uplift.lookup import Cube
+    from uplift.lookup.cube import Cube
 
 
 @click.command(
@@ -207,8 +209,9 @@ def command(
     force: bool,
     **surface: Any,
 ) -> None:
-    from uplift.extras.paint import Medium, read_paints
+    from uplift.extras.paint.coats import Medium
     from uplift.extras.paint.paints import check_unit
+    from uplift.extras.paint.paints_file import read_paints
 
     _check_coat(kind, plate)
     paints = None
@@ -327,8 +330,10 @@ def _prepare_resolver(
     """
     import numpy as np
 
-    from uplift.atlas import Atlas, read_atlas
-    from uplift.lookup import as_wavelengths, load
+    from uplift.atlas.atlas import Atlas
+    from uplift.atlas.sources import read_atlas
+    from uplift.lookup.blocks import as_wavelengths
+    from uplift.lookup.cube import load
 
     cube = load(cube_path)
     space = None if input_space is None else find_input_space(input_space)
@@ -369,7 +374,7 @@ def _surface(
     surface_reflectance: float | None,
     internal_reflectance: float | None,
 ) -> Surface:
-    from uplift.extras.paint import Surface
+    from uplift.extras.paint.optics import Surface
 
     of_index = Surface.of_index(refractive_index)
     return Surface(
@@ -390,8 +395,9 @@ def _paint(
 ) -> None:
     """Paint the coat over an image."""
     enable_jit_cache()
-    from uplift.extras.paint import make_coat, overpainter
-    from uplift.extras.texture import convert
+    from uplift.extras.paint.coats import make_coat
+    from uplift.extras.paint.overpaint import overpainter
+    from uplift.extras.texture.conversion import convert
 
     provenance = {
         "kind": recipe.kind,

@@ -27,7 +27,7 @@ from ..startup import enable_jit_cache
 
 if TYPE_CHECKING:
     from uplift.colorimetry.illuminants import Illuminant
-    from uplift.extras.paint import Surface
+    from uplift.extras.paint.optics import Surface
 
 paints_option = click.option(
     "--paints",
@@ -141,7 +141,7 @@ def _surface(
     index: float | None, outside: float | None, inside: float | None
 ) -> Surface | None:
     """Return the surface that options state, None if it is to be fitted."""
-    from uplift.extras.paint import Surface
+    from uplift.extras.paint.optics import Surface
 
     given = (index, outside, inside)
     if all(value is None for value in given):
@@ -272,7 +272,7 @@ def match(
 @click.argument("paints_path", metavar="PAINTS.toml", type=click.Path())
 @options.table_or_json
 def info(paints_path: str, style: str) -> None:
-    from uplift.extras.paint import read_paints
+    from uplift.extras.paint.paints_file import read_paints
 
     paints = read_paints(paints_path)
     if style == "json":

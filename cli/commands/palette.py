@@ -87,17 +87,13 @@ def command(
     force: bool,
 ) -> None:
     from uplift.common.files import write_text
-    from uplift.extras.palette import (
-        design,
-        matrix,
-        read_palette,
-        standard_model,
-        unmet_goals,
-        write_designed,
-    )
+    from uplift.extras.palette.design import design, matrix, write_designed
+    from uplift.extras.palette.factor import standard_model
     from uplift.extras.palette.picture import cutaway
     from uplift.extras.palette.plots import plot_matrix, plot_spectra
     from uplift.extras.palette.relight_page import page, relighting
+    from uplift.extras.palette.spec import read_palette
+    from uplift.extras.palette.unmet import unmet_goals
 
     palette = read_palette(spec)
     check_outputs(output, plot_path, spectra_path, html, inputs=palette.sources)

@@ -27,7 +27,8 @@ from .passes_decoding import decode, passes_argument, recipe
 
 if TYPE_CHECKING:
     from uplift.colorimetry.illuminants import Illuminant
-    from uplift.extras.scene.passes import Materials, Passes
+    from uplift.extras.scene.passes.materials import Materials
+    from uplift.extras.scene.passes.passes import Passes
 
 DEFAULT_FILE = "passes.toml"
 
@@ -153,9 +154,9 @@ def _materials(
     cube_path: str | None,
     pixels: dict[str, Any],
 ) -> Materials:
-    from uplift.extras.scene.passes import library_materials, scene_materials
+    from uplift.extras.scene.passes.materials import library_materials, scene_materials
     from uplift.extras.texture.scene_colours import Images
-    from uplift.lookup import load
+    from uplift.lookup.cube import load
 
     if not paths and not files:
         if cube_path is not None:
@@ -185,7 +186,7 @@ def _materials(
 @options.light("Further light", "none")
 @options.table_or_json
 def info(passes_path: str, lights: Sequence[Illuminant], style: str) -> None:
-    from uplift.extras.scene.passes import read_passes
+    from uplift.extras.scene.passes.file import read_passes
 
     passes = read_passes(passes_path)
     others = {str(light): _light_numbers(passes, light) for light in lights}
@@ -203,7 +204,7 @@ def _light_numbers(passes: Passes, light: Illuminant) -> list[float]:
 
     from uplift.colorimetry.tables import stated_name
     from uplift.common.errors import UnknownNameError, UpliftWarning
-    from uplift.extras.scene.passes import scaled_power
+    from uplift.extras.scene.passes.passes import scaled_power
 
     name = stated_name("illuminant", light)
     with contextlib.suppress(UnknownNameError):
@@ -239,11 +240,12 @@ def _light_numbers(passes: Passes, light: Illuminant) -> list[float]:
 )
 @options.force
 def page(passes_path: str, output: str, force: bool) -> None:
-    from uplift.atlas import on_grid, read_atlas
+    from uplift.atlas.resampling import on_grid
+    from uplift.atlas.sources import read_atlas
     from uplift.colorimetry import observer
     from uplift.common.files import write_text
-    from uplift.extras.scene.passes import read_passes
     from uplift.extras.scene.passes.browser_page import page
+    from uplift.extras.scene.passes.file import read_passes
 
     check_outputs(output)
     checker = on_grid(read_atlas("macbeth"), observer.grid())

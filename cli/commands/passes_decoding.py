@@ -21,7 +21,7 @@ from ..sequences import pair_frames
 
 if TYPE_CHECKING:
     from uplift.colorimetry.illuminants import Illuminant
-    from uplift.extras.scene.passes import Decoder
+    from uplift.extras.scene.passes.decoder import Decoder
 
 passes_argument = click.argument(
     "passes_path", metavar="PASSES.toml", type=click.Path()
@@ -96,7 +96,7 @@ def decode(
     **decoding: Any,
 ) -> None:
     from uplift.extras.files.outputs import make_folder
-    from uplift.extras.scene.passes import decode_pictures
+    from uplift.extras.scene.passes.decode import decode_pictures
 
     decoder = _decoder(passes_path, **decoding)
     jobs = _jobs(sources, output)
@@ -123,7 +123,8 @@ def decode(
 def _decoder(
     passes_path: str, space: str, light: str | None, white: Illuminant | None
 ) -> Decoder:
-    from uplift.extras.scene.passes import decoder, read_passes
+    from uplift.extras.scene.passes.decoder import decoder
+    from uplift.extras.scene.passes.file import read_passes
 
     return decoder(read_passes(passes_path), space=space, light=light, white=white)
 
@@ -176,6 +177,6 @@ def _frame_name(path: str) -> str:
 )
 @decoding_options
 def recipe(passes_path: str, tool: str, **decoding: Any) -> None:
-    from uplift.extras.scene.passes import RECIPES
+    from uplift.extras.scene.passes.recipe import RECIPES
 
     emit(RECIPES[tool](_decoder(passes_path, **decoding)), nl=False)

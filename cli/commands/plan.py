@@ -54,9 +54,10 @@ def command(
 ) -> None:
     enable_jit_cache()
     from uplift.common.files import write_text
-    from uplift.extras.scene.plan import plan, read_scene_file, summary
+    from uplift.extras.scene.plan import summary
     from uplift.extras.scene.plan.candidates import QUICK, SearchGrid
-    from uplift.extras.scene.plan.files import SUFFIX
+    from uplift.extras.scene.plan.files import SUFFIX, read_scene_file
+    from uplift.extras.scene.plan.planning import plan
 
     scene_file = read_scene_file(scene)
     path = scene_file.path.with_suffix(SUFFIX) if output is None else Path(output)

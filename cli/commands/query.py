@@ -183,7 +183,8 @@ def _pass_numbers(
 ) -> Iterator[tuple[list[float], list[float]]]:
     """Yield linear RGB and the numbers (K,) of passes of each colour."""
     from uplift.colorimetry import observer
-    from uplift.extras.scene.passes import check_cube, read_passes
+    from uplift.extras.scene.passes.file import read_passes
+    from uplift.extras.scene.passes.textures import check_cube
 
     passes = read_passes(path)
     answers = Answers(lights=(), **colours | {"wavelengths": observer.grid()})
@@ -200,7 +201,7 @@ def _check(
     than the tolerance.
     """
     from uplift.extras.report.answers import read_answers
-    from uplift.lookup import load
+    from uplift.lookup.cube import load
 
     stored = read_answers(path)
     differences = stored.differences(load(cube_path), mode)

@@ -26,7 +26,7 @@ from ..startup import enable_jit_cache
 if TYPE_CHECKING:
     from uplift.colorimetry.illuminants import Illuminant
     from uplift.extras.relight.relight import Relit
-    from uplift.lookup import Cube
+    from uplift.lookup.cube import Cube
 
 SAMPLE = "still-life.png"
 SAMPLE_ATLAS = "macbeth"
@@ -161,7 +161,7 @@ def _write_image(
     """Relight an image at full size, and return the user's cube with its warnings."""
     from uplift.extras import texture
     from uplift.extras.relight.relighter import prepare_relighter
-    from uplift.lookup import load
+    from uplift.lookup.cube import load
 
     with progress_bar("computing spectra") as progress:
         extra, notes = _cube_of_user(cube_path, atlases)
@@ -201,7 +201,7 @@ def _write_pictures(
     """Write a figure or page, and return the user's cube with its warnings."""
     from uplift.common.files import write_text
     from uplift.extras.relight.relight import relight, relit_page, write_relit_sheet
-    from uplift.lookup import load
+    from uplift.lookup.cube import load
 
     with progress_bar("computing spectra"):
         packaged = load()
@@ -271,7 +271,7 @@ def _cube_of_user(
     path: str | None, atlases: Sequence[str]
 ) -> tuple[Cube | None, list[UpliftWarning]]:
     """Load the cube of a file, or build that of atlases; None without either."""
-    from uplift.lookup import load
+    from uplift.lookup.cube import load
 
     if atlases:
         from uplift.pipeline.build import build

@@ -65,13 +65,13 @@ def command(
     worst: int,
     force: bool,
 ) -> None:
-    from uplift.atlas import read_atlas
+    from uplift.atlas.sources import read_atlas
     from uplift.common.files import write_text
     from uplift.extras.colour.light_sets import REPORT_LIGHTS
     from uplift.extras.report.assessment import assess
     from uplift.extras.report.page import render_report, to_json
     from uplift.extras.report.rebuild import recorded_atlas, recorded_files
-    from uplift.lookup import find_file, load
+    from uplift.lookup.cube import find_file, load
 
     path = output
     if style == "html":

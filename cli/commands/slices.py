@@ -59,10 +59,10 @@ SHEET = options.OutputFile(_check_sheet)
 def command(cube: str, output: str | None, sheet: str | None, force: bool) -> None:
     if output is None and sheet is None:
         output = f"{Path(cube).stem}.exr"
-    from uplift.cube import read
+    from uplift.cube.file import read
     from uplift.extras.images.exr import write_slices
     from uplift.extras.pages.sheet import write_sheet
-    from uplift.lookup import find_file
+    from uplift.lookup.cube import find_file
 
     check_outputs(output, sheet)
     data = read(find_file(cube))

@@ -341,7 +341,7 @@ def sensitivity(
     from uplift.extras.report.rebuild import recorded_atlas, recorded_files
     from uplift.lab.chart.selection import perturb_method, select_methods
     from uplift.lab.study.sensitivity import perturb, perturb_atlas
-    from uplift.lookup import load
+    from uplift.lookup.cube import load
 
     others = select_methods(methods) if methods else ()
     loaded = load(cube)

@@ -222,7 +222,7 @@ def command(
     **settings: Any,
 ) -> None:
     from uplift.extras import texture
-    from uplift.lookup import find_file, load
+    from uplift.lookup.cube import find_file, load
 
     if passes is not None:
         options.exclude("--passes", "kind", "mask", "errors", "wavelengths", "also")
@@ -338,7 +338,9 @@ def _with_suffix(sources: Sequence[str], target: str) -> str:
 
 def _jobs_of_passes(jobs: Sequence[Job], path: str) -> list[Job]:
     """Return a job for each image and pass, the images of a pass in a row."""
-    from uplift.extras.scene.passes import PassSettings, pass_name, read_passes
+    from uplift.extras.scene.passes.file import read_passes
+    from uplift.extras.scene.passes.settings import PassSettings
+    from uplift.extras.scene.passes.textures import pass_name
 
     path = os.path.abspath(path)
     count = read_passes(path).count

@@ -16,8 +16,8 @@ from ..output.progress import progress_bar
 from ..outputs import check_outputs
 
 if TYPE_CHECKING:
-    from uplift.colorimetry import Sensor
     from uplift.colorimetry.illuminants import Illuminant
+    from uplift.colorimetry.sensor import Sensor
     from uplift.common.arrays import Array
     from uplift.extras.scene.wavelengths import Choice
     from uplift.extras.scene.wavelengths.sampling import RenderSetup
@@ -93,7 +93,8 @@ def command(
     **goal: Any,
 ) -> None:
     _check_goal()
-    from uplift.atlas import merge, on_grid
+    from uplift.atlas.atlas import merge
+    from uplift.atlas.resampling import on_grid
     from uplift.colorimetry.observer import require_observer, sensor
     from uplift.extras.scene.wavelengths import grid, make_setup
 

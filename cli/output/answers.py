@@ -12,7 +12,7 @@ from .console import columns, has_colours, print_fields, say
 
 if TYPE_CHECKING:
     from uplift.common.arrays import Array
-    from uplift.lookup import Cube
+    from uplift.lookup.cube import Cube
 
 BLOCKS = "▁▂▃▄▅▆▇█"
 CELL_WIDTH = 20
@@ -78,7 +78,7 @@ def as_lists(values: Array) -> list[Any]:
 
 def without_rounding(values: Array) -> Array:
     """Return colours or reflectances whose rounding errors of 0 are 0."""
-    from uplift.colorimetry import ROUNDING
+    from uplift.colorimetry.sensor import ROUNDING
 
     return values * (abs(values) > ROUNDING) + 0.0  # -0.0 + 0.0 is 0.0
 

@@ -11,14 +11,14 @@ from .console import make_table, print_fields, say
 if TYPE_CHECKING:
     from uplift.common.arrays import Array
     from uplift.extras.looks.metamer_bounds import Bounds
-    from uplift.lookup import Cube
+    from uplift.lookup.cube import Cube
 
     from .tables import SafeTable
 
 
 def bounds_fields(bounds: Bounds, row: int) -> dict[str, Any]:
     """Return the bounds of a colour as JSON values."""
-    from uplift.colorimetry import lab
+    from uplift.colorimetry.delta_e import lab
     from uplift.extras.looks.lab_errors import LIKELY
 
     largest = bounds.largest

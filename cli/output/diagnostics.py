@@ -127,7 +127,7 @@ def _hint_of_missing_cube(path: str) -> str:
     """Return how the cube of a name is built, or a file of nearly this name; empty
     where neither is known.
     """
-    from uplift.atlas import shipped_atlases
+    from uplift.atlas.sources import shipped_atlases
 
     if os.path.isfile(f"{path}.uplift"):
         return f"did you mean {path}.uplift?"

@@ -13,7 +13,7 @@ from .console import paragraph
 from .diagnostics import hint_for, warn
 
 if TYPE_CHECKING:
-    from uplift.lookup import Cube
+    from uplift.lookup.cube import Cube
 
 Made = TypeVar("Made")
 NOTES = (

@@ -12,7 +12,7 @@ from .console import make_table, print_csv, print_json, say, show
 
 if TYPE_CHECKING:
     from uplift.common.arrays import Array
-    from uplift.extras.scene.passes import Passes
+    from uplift.extras.scene.passes.passes import Passes
 
 BOUNCES = ("1 bounce", "2", "3", "4", "mean")
 
@@ -27,7 +27,7 @@ def mean_rows(errors: Array) -> list[list[float]]:
 
 def passes_fields(passes: Passes) -> dict[str, Any]:
     """Return the contents of passes as JSON values."""
-    from uplift.extras.scene.passes import passes_digest
+    from uplift.extras.scene.passes.file import passes_digest
 
     lights = {}
     for light in passes.lights:

@@ -34,7 +34,7 @@ from .console import (
 if TYPE_CHECKING:
     from uplift.common.arrays import Array
     from uplift.extras.colour.query import QueryBlock
-    from uplift.lookup import Cube
+    from uplift.lookup.cube import Cube
 
     from ..queries import Answers
 

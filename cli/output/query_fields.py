@@ -9,8 +9,8 @@ from .answers import coordinates, describe_coordinates, format_rgb, hex_code
 if TYPE_CHECKING:
     from uplift.common.arrays import Array
     from uplift.extras.colour.query import QueryResult
-    from uplift.extras.photographs import PhotographedColour
-    from uplift.lookup import Cube
+    from uplift.extras.photographs.colour import PhotographedColour
+    from uplift.lookup.cube import Cube
 
     from ..queries import Answers
 
@@ -26,7 +26,7 @@ LARGEST = 1e30
 
 def answer_fields(answers: Answers, result: QueryResult) -> dict[str, str]:
     """Return an answer and its errors by the names of the rows of a table."""
-    from uplift.colorimetry import delta_e_rgb
+    from uplift.colorimetry.delta_e import delta_e_rgb
     from uplift.colorimetry.sensor import SLACK
 
     cube = answers.cube

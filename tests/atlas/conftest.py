@@ -5,7 +5,8 @@ from pathlib import Path
 
 import pytest
 
-from uplift.atlas import Atlas, read_atlas
+from uplift.atlas.atlas import Atlas
+from uplift.atlas.sources import read_atlas
 
 
 @pytest.fixture

@@ -6,7 +6,7 @@ from numpy.testing import assert_array_equal
 
 from tests.atlas.atlas_texts import ORANGE, PLAIN, THESIS
 from tests.helpers import raises, warns
-from uplift.atlas import read_atlas
+from uplift.atlas.sources import read_atlas
 from uplift.common.errors import AtlasError
 
 HEADER_1_0 = "ART measurement archive version 1.0\n\nArchive content: greys\n\n"

@@ -11,18 +11,10 @@ import pytest
 from numpy.testing import assert_array_equal
 
 from tests.helpers import raises, warns
-from uplift.atlas import (
-    Atlas,
-    Entry,
-    SkippedEntry,
-    Source,
-    SourceLocation,
-    from_distributions,
-    on_grid,
-    read_atlas,
-    resample,
-    write_atlas,
-)
+from uplift.atlas.atlas import Atlas, Entry, SkippedEntry, Source
+from uplift.atlas.document import SourceLocation
+from uplift.atlas.resampling import on_grid, resample
+from uplift.atlas.sources import from_distributions, read_atlas, write_atlas
 from uplift.common.errors import AtlasError, UnknownNameError
 from uplift.extras.formats.samples import Spectrum
 

@@ -14,7 +14,8 @@ from hypothesis import strategies as st
 
 from tests.atlas.atlas_texts import PLAIN
 from tests.helpers import raises, warns
-from uplift.atlas import Atlas, Entry, Header, read_atlas, write_atlas
+from uplift.atlas.atlas import Atlas, Entry, Header
+from uplift.atlas.sources import read_atlas, write_atlas
 from uplift.common.errors import AtlasError, OutputError, UpliftWarning
 from uplift.extras.formats.quantities import POWER, REFLECTANCE, name_quantities
 from uplift.extras.formats.statements import remark_scale

@@ -7,7 +7,8 @@ import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 from scipy.interpolate import PchipInterpolator
 
-from uplift.atlas import Atlas, Entry, on_grid, resample
+from uplift.atlas.atlas import Atlas, Entry
+from uplift.atlas.resampling import on_grid, resample
 
 GRID = np.arange(380.0, 781.0, 5.0)
 

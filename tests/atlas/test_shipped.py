@@ -9,7 +9,7 @@ import pytest
 
 from tests.atlas.atlas_texts import ATLASES
 from tests.helpers import raises, warns
-from uplift.atlas import read_atlas, shipped_atlases
+from uplift.atlas.sources import read_atlas, shipped_atlases
 from uplift.common.errors import AtlasError
 
 

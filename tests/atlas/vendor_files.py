@@ -15,7 +15,8 @@ from pathlib import Path
 import jinja2
 import numpy as np
 
-from uplift.atlas import Atlas, Entry, on_grid
+from uplift.atlas.atlas import Atlas, Entry
+from uplift.atlas.resampling import on_grid
 
 Files = dict[str, bytes]
 NM = np.arange(380.0, 731.0, 10.0)

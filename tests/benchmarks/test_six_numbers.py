@@ -6,7 +6,7 @@ from numpy.testing import assert_allclose
 from benchmarks import six_numbers
 from benchmarks.materials import materials
 from uplift.colorimetry import observer
-from uplift.extras.photographs import Noise
+from uplift.extras.photographs.photograph import Noise
 
 MATRIX = np.concatenate(
     [observer.sensor(illuminant=name).matrix for name in ("D65", "A")]

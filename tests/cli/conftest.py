@@ -145,12 +145,13 @@ def warning_lines(result: Result) -> list[str]:
 @pytest.fixture(scope="session")
 def passes_text() -> str:
     """The file of two passes."""
-    from uplift.extras.scene import passes
+    from uplift.extras.scene.passes.choice import fit_bands
+    from uplift.extras.scene.passes.file import to_toml
+    from uplift.extras.scene.passes.materials import library_materials
+    from uplift.extras.scene.passes.presets import PRESETS
 
-    bands = passes.PRESETS[2]
-    return passes.to_toml(
-        passes.fit_bands(bands, passes.library_materials(), ("D65", "A"))
-    )
+    bands = PRESETS[2]
+    return to_toml(fit_bands(bands, library_materials(), ("D65", "A")))
 
 
 @pytest.fixture

@@ -10,7 +10,8 @@ import uplift
 from tests.extras.texture.conftest import channels, planes, write_exr
 from tests.helpers import raises
 from uplift.common.errors import OptionError
-from uplift.extras.photographs import photograph, prepare
+from uplift.extras.photographs.answers import prepare
+from uplift.extras.photographs.photograph import photograph
 from uplift.samples import sample_path
 
 

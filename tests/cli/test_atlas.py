@@ -7,7 +7,8 @@ from pathlib import Path
 
 from numpy.testing import assert_allclose, assert_array_equal
 
-from uplift.atlas import on_grid, read_atlas
+from uplift.atlas.resampling import on_grid
+from uplift.atlas.sources import read_atlas
 from uplift.colorimetry import observer
 
 from .conftest import warning_lines

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from uplift.colorimetry import lab
+from uplift.colorimetry.delta_e import lab
 from uplift.colorimetry.observer import light
 
 COLOURS = "0.2,0.3,0.4\n0.9,0.1,0.1"

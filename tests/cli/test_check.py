@@ -10,9 +10,9 @@ import pytest
 
 import uplift
 from tests.helpers import with_points
-from uplift.cube import write
+from uplift.cube.file import write
 from uplift.extras.report.regression import LIMITS
-from uplift.lattice import Lattice
+from uplift.lattice.lattice import Lattice
 
 ROOT = Path(__file__).parents[2]
 CUBES = [

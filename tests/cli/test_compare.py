@@ -12,7 +12,7 @@ from click.testing import CliRunner
 from uplift_cli.commands import compare
 from uplift_cli.main import main
 
-from uplift.atlas import read_atlas
+from uplift.atlas.sources import read_atlas
 from uplift.extras.emission.lamps import read_lamps
 from uplift.lab.timing import ONE_THREAD
 

@@ -6,7 +6,7 @@ import shutil
 import numpy as np
 import pytest
 
-from uplift.extras.export import write_coeff
+from uplift.extras.export.coeff import write_coeff
 
 STEM = "moments-8-macbeth"
 

@@ -6,7 +6,7 @@ from uplift_cli.commands.build import command as build
 
 import uplift
 from tests.cube.cube_files import forge
-from uplift.cube import digest
+from uplift.cube.file import digest
 
 
 def test_json_has_all_fields(ask, cubes):

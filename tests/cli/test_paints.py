@@ -11,10 +11,12 @@ from numpy.testing import assert_allclose
 
 from tests.extras.paint.invented import NAMES, invented, measured, plan
 from tests.extras.texture.conftest import channels, planes, write_exr
-from uplift.colorimetry import delta_e_spectra, observer
+from uplift.colorimetry import observer
+from uplift.colorimetry.delta_e import delta_e_spectra
 from uplift.common.errors import OptionError
 from uplift.extras.colour.srgb import hex_codes
-from uplift.extras.paint import PaintTarget, match, read_paints, write_paints
+from uplift.extras.paint.paints_file import read_paints, write_paints
+from uplift.extras.paint.recipes import PaintTarget, match
 
 GRID = (400, 700, 20)
 

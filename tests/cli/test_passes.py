@@ -5,7 +5,7 @@ import OpenEXR
 import pytest
 from numpy.testing import assert_allclose
 
-from uplift.extras.scene.passes import read_passes
+from uplift.extras.scene.passes.file import read_passes
 
 
 @pytest.fixture

@@ -7,7 +7,7 @@ import pytest
 
 from tests.extras.texture.conftest import planes, write_exr
 from tests.helpers import near_black, with_absent_points
-from uplift.cube import read, write
+from uplift.cube.file import read, write
 
 from .conftest import warning_lines
 

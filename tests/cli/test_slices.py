@@ -4,7 +4,7 @@ import OpenEXR
 import pytest
 
 from tests.cube.hand_made import hand_made
-from uplift.cube import write
+from uplift.cube.file import write
 
 
 @pytest.fixture

@@ -9,13 +9,8 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from uplift.colorimetry import (
-    delta_e_2000,
-    delta_e_2000_terms,
-    lab,
-    lab_to_xyz,
-    observer,
-)
+from uplift.colorimetry import observer
+from uplift.colorimetry.delta_e import delta_e_2000, delta_e_2000_terms, lab, lab_to_xyz
 from uplift.extras.colour.dominant import GREY, dominant_wavelength
 
 PAIRS = np.loadtxt(

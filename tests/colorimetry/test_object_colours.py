@@ -6,8 +6,9 @@ from numpy.testing import assert_array_equal
 from scipy.optimize import lsq_linear
 from scipy.spatial import ConvexHull
 
-from uplift.colorimetry import observer, solid, solid_volume, toward_grey
-from uplift.lattice import Lattice, axis_nodes
+from uplift.colorimetry import observer
+from uplift.colorimetry.object_colours import solid, solid_volume, toward_grey
+from uplift.lattice.lattice import Lattice, axis_nodes
 
 
 def best_residual(sensor, rgb):

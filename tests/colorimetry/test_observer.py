@@ -9,7 +9,8 @@ import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
 from tests.helpers import raises
-from uplift.atlas import on_grid, read_atlas
+from uplift.atlas.resampling import on_grid
+from uplift.atlas.sources import read_atlas
 from uplift.colorimetry import observer, tables
 from uplift.colorimetry.gamut import SRGB, conversion
 from uplift.colorimetry.observer import COMMON_SPACES, smallest_space
@@ -23,7 +24,7 @@ from uplift.extras.colour.spaces import (
 )
 from uplift.extras.colour.srgb import decode, encode, to_display_codes
 from uplift.extras.emission.lamps import known_lamps
-from uplift.lattice import axis_nodes
+from uplift.lattice.lattice import axis_nodes
 
 SPACES = ("sRGB", "P3-D65", "ITU-R BT.2020", "ACEScg", "ProPhoto RGB")
 NAMES = {

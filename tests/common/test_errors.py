@@ -7,7 +7,7 @@ import inspect
 import pytest
 
 import uplift
-from uplift.atlas import read_atlas
+from uplift.atlas.sources import read_atlas
 from uplift.common import errors
 from uplift.common.errors import (
     AtlasError,

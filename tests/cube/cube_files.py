@@ -10,7 +10,9 @@ from typing import Any
 import numpy as np
 from safetensors.numpy import save_file
 
-from uplift.cube import CubeData, container, contents
+from uplift.cube import container
+from uplift.cube.data import CubeData
+from uplift.cube.file import contents
 
 
 def forge(

@@ -7,10 +7,12 @@ import numpy as np
 from tests.helpers import with_points
 from uplift.colorimetry.observer import sensor
 from uplift.common.arrays import Array
-from uplift.cube import AtlasTable, CubeData, EntrySpectra
+from uplift.cube.data import AtlasTable, CubeData, EntrySpectra
 from uplift.cube.schema import POINTS
-from uplift.lattice import Lattice, PointTable, Status, axis_nodes
-from uplift.models import Model, Moments
+from uplift.lattice.lattice import Lattice, axis_nodes
+from uplift.lattice.point_table import PointTable, Status
+from uplift.models.model import Model
+from uplift.models.moments import Moments
 
 
 def table(

@@ -12,12 +12,11 @@ from tests.cube.hand_made import with_outside
 from tests.cube.test_round_trip import assert_same
 from tests.helpers import raises
 from uplift.common.errors import CubeFileError, OutputError
-from uplift.cube import read, write
 from uplift.cube.container import KEY
-from uplift.cube.file import VERSION
+from uplift.cube.file import VERSION, read, write
 from uplift.cube.schema import ARRAYS, MAX_LIGHTS, METADATA
-from uplift.lattice import Status
-from uplift.models import Moments
+from uplift.lattice.point_table import Status
+from uplift.models.moments import Moments
 
 FLIPS = 500
 CUTS = 60

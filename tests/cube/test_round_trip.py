@@ -11,9 +11,9 @@ from hypothesis.extra.numpy import arrays
 from numpy.testing import assert_array_equal
 
 from tests.cube.hand_made import hand_made, with_outside
-from uplift.cube import contents, digest, read, write
+from uplift.cube.file import contents, digest, read, write
 from uplift.cube.schema import PROVENANCE
-from uplift.lattice import PointTable
+from uplift.lattice.point_table import PointTable
 
 TEXT = st.text(st.characters(exclude_categories=["Cs"]), max_size=8)
 JSON = st.recursive(

@@ -17,11 +17,12 @@ from tests.helpers import (
 )
 from uplift.common import machine
 from uplift.common.errors import CubeFileError, OutputError
-from uplift.cube import digest, read, write
+from uplift.cube.file import digest, read, write
 from uplift.cube.schema import POINTS
 from uplift.extras.images.exr import write_slices
 from uplift.extras.pages.sheet import write_sheet
-from uplift.lattice import CORNERS, Lattice, Status
+from uplift.lattice.lattice import CORNERS, Lattice
+from uplift.lattice.point_table import Status
 
 
 @pytest.fixture

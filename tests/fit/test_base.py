@@ -6,11 +6,15 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from uplift.colorimetry import delta_e_spectra, in_unit_cube, observer
-from uplift.fit import Family, FittedEntries, Problem, learn_base, shipped_library
-from uplift.fit.base import match_spectra
-from uplift.models import Moments, evaluate, reflectance
-from uplift.models.moments import moment_matrix
+from uplift.colorimetry import observer
+from uplift.colorimetry.delta_e import delta_e_spectra
+from uplift.colorimetry.sensor import in_unit_cube
+from uplift.fit.base import learn_base, match_spectra
+from uplift.fit.entries import FittedEntries
+from uplift.fit.families import Family, shipped_library
+from uplift.fit.problem import Problem
+from uplift.models.model import evaluate, reflectance
+from uplift.models.moments import Moments, moment_matrix
 
 LIGHTS = tuple(observer.light(name) for name in ("D65", "A", "FL2", "FL11", "LED-B3"))
 GRID = observer.grid()

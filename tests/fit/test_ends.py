@@ -7,7 +7,7 @@ from itertools import product
 import numpy as np
 import pytest
 
-from uplift.lookup import MODES
+from uplift.lookup.interpolate import MODES
 
 INSIDE = 1e-6
 CORNERS = np.array(list(product((0.0, 1.0), repeat=3)))

@@ -8,11 +8,16 @@ from numpy.testing import assert_allclose
 from scipy.optimize import leastsq
 
 from tests.conftest import MACBETH
-from uplift.atlas import on_grid, read_atlas
-from uplift.colorimetry import delta_e_2000, in_unit_cube, lab, lab_jacobian, observer
-from uplift.fit import Problem, fit_entries
-from uplift.fit.entries import minimise, objective
-from uplift.models import Moments, Sigmoid, evaluate
+from uplift.atlas.resampling import on_grid
+from uplift.atlas.sources import read_atlas
+from uplift.colorimetry import observer
+from uplift.colorimetry.delta_e import delta_e_2000, lab, lab_jacobian
+from uplift.colorimetry.sensor import in_unit_cube
+from uplift.fit.entries import fit_entries, minimise, objective
+from uplift.fit.problem import Problem
+from uplift.models.model import evaluate
+from uplift.models.moments import Moments
+from uplift.models.sigmoid import Sigmoid
 
 LIGHTS = ("D65", "A", "FL2", "FL11", "LED-B3")
 MODEL = Moments(9)

@@ -10,10 +10,18 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 from tests.conftest import ATLASES
 from tools import ship_library
-from uplift.atlas import read_atlas, resample
+from uplift.atlas.resampling import resample
+from uplift.atlas.sources import read_atlas
 from uplift.colorimetry import observer
-from uplift.fit import Family, families_with
-from uplift.fit.families import FILE, LENGTH, NUGGET, krige_families, learn_relevance
+from uplift.fit.families import (
+    FILE,
+    LENGTH,
+    NUGGET,
+    Family,
+    families_with,
+    krige_families,
+    learn_relevance,
+)
 from uplift.fit.kriging import Points
 
 RNG = np.random.default_rng(5)

@@ -5,12 +5,13 @@ import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
 from tests.helpers import quiet_build
-from uplift.colorimetry import delta_e_spectra, lab, observer
+from uplift.colorimetry import observer
+from uplift.colorimetry.delta_e import delta_e_spectra, lab
 from uplift.fit.gradients import DIRECTIONS, LARGEST_EXCESS, Steps, cells_near
-from uplift.lattice import CORNERS
-from uplift.lookup import Cube
+from uplift.lattice.lattice import CORNERS
+from uplift.lookup.cube import Cube
 from uplift.lookup.interpolate import lattice_spectra
-from uplift.models import reflectance
+from uplift.models.model import reflectance
 from uplift.pipeline.spots import SPIKY
 
 ATLAS = "cie2017"

@@ -16,13 +16,18 @@ from uplift import build
 from uplift.colorimetry import observer
 from uplift.common.progress import ignore_progress
 from uplift.extras.thesis.growth_coarse import grow_coarse_to_fine, strides
-from uplift.fit import Nodes, Prior, Problem, grow_outward, nodes_of, shells
 from uplift.fit.base import smooth
 from uplift.fit.growth import Growth, improve
+from uplift.fit.growth_outward import grow_outward, shells
+from uplift.fit.prior import Prior
+from uplift.fit.problem import Nodes, Problem, nodes_of
 from uplift.fit.seeds import full_entry, initial_guess, seed
 from uplift.fit.store import MAX_LOSS, store
-from uplift.lattice import NOT_FITTED, Lattice, Status, axis_nodes
-from uplift.models import Moments, Sigmoid, reflectance
+from uplift.lattice.lattice import Lattice, axis_nodes
+from uplift.lattice.point_table import NOT_FITTED, Status
+from uplift.models.model import reflectance
+from uplift.models.moments import Moments
+from uplift.models.sigmoid import Sigmoid
 
 MODEL = Moments(9)
 LATTICE = Lattice(axis_nodes("srgb", 7))

@@ -8,9 +8,11 @@ from numpy.testing import assert_allclose
 
 from tests.conftest import MACBETH
 from tests.fit.test_kriging import covariance
-from uplift.atlas import on_grid, read_atlas
-from uplift.colorimetry import delta_e_spectra, in_unit_cube, observer
-from uplift.fit import Problem
+from uplift.atlas.resampling import on_grid
+from uplift.atlas.sources import read_atlas
+from uplift.colorimetry import observer
+from uplift.colorimetry.delta_e import delta_e_spectra
+from uplift.colorimetry.sensor import in_unit_cube
 from uplift.fit.base import smooth
 from uplift.fit.kernel_learning import (
     MIN_ENTRIES,
@@ -23,8 +25,9 @@ from uplift.fit.kernel_learning import (
     visible_change,
 )
 from uplift.fit.kriging import DEFAULT, METRIC, REACH, WHITE, Kernel, krige
+from uplift.fit.problem import Problem
 from uplift.fit.solver import solve
-from uplift.models import Moments
+from uplift.models.moments import Moments
 
 MANY = np.random.default_rng(8).uniform(0, 60, (150, 3))
 ALL_VISIBLE = np.broadcast_to(np.eye(3), (150, 1, 3, 3))

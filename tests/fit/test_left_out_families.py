@@ -6,18 +6,18 @@ from numpy.testing import assert_allclose
 
 import uplift
 from tests.conftest import MACBETH
-from uplift.colorimetry import delta_e_spectra, in_unit_cube, observer
-from uplift.fit import (
-    Family,
-    Problem,
-    learn_base,
-    leave_out_families,
-    shipped_library,
-)
+from uplift.colorimetry import observer
+from uplift.colorimetry.delta_e import delta_e_spectra
+from uplift.colorimetry.sensor import in_unit_cube
 from uplift.fit import left_out_families as module
-from uplift.fit.families import STAND_IN
+from uplift.fit.base import learn_base
+from uplift.fit.families import STAND_IN, Family, shipped_library
+from uplift.fit.left_out_families import leave_out_families
+from uplift.fit.problem import Problem
 from uplift.lookup.errors_under_lights import light_errors
-from uplift.models import Moments, Sigmoid, evaluate
+from uplift.models.model import evaluate
+from uplift.models.moments import Moments
+from uplift.models.sigmoid import Sigmoid
 
 LIGHTS = tuple(observer.light(name) for name in ("D65", "A", "FL2", "FL11", "LED-B3"))
 ONES = (1.0,) * 7

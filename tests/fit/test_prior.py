@@ -7,12 +7,17 @@ import pytest
 from numpy.testing import assert_allclose
 
 from tests.conftest import ATLASES
-from uplift.atlas import read_atlas, resample
-from uplift.colorimetry import delta_e_spectra, in_unit_cube, observer
-from uplift.fit import Problem, fit_entries, fit_prior
+from uplift.atlas.resampling import resample
+from uplift.atlas.sources import read_atlas
+from uplift.colorimetry import observer
+from uplift.colorimetry.delta_e import delta_e_spectra
+from uplift.colorimetry.sensor import in_unit_cube
+from uplift.fit.entries import fit_entries
 from uplift.fit.kernel_learning import MIN_ENTRIES
-from uplift.fit.prior import STEEP, _bounded
-from uplift.models import Moments, evaluate, reflectance
+from uplift.fit.prior import STEEP, _bounded, fit_prior
+from uplift.fit.problem import Problem
+from uplift.models.model import evaluate, reflectance
+from uplift.models.moments import Moments
 
 LIGHT = observer.light("A")
 LIGHTS = tuple(observer.light(name) for name in ("D65", "A", "FL2", "FL11", "LED-B3"))

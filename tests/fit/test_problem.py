@@ -15,8 +15,9 @@ from tests.helpers import run_python
 from uplift.colorimetry import observer
 from uplift.colorimetry.object_colours import solid
 from uplift.fit.problem import MARGIN, nodes_of
-from uplift.lattice import Lattice, Status, axis_nodes
-from uplift.models import reflectance
+from uplift.lattice.lattice import Lattice, axis_nodes
+from uplift.lattice.point_table import Status
+from uplift.models.model import reflectance
 
 SPACES = ("P3-D65", "ITU-R BT.2020", "ACEScg", "ProPhoto RGB")
 DIM = 11

@@ -15,23 +15,16 @@ from numpy.testing import assert_allclose, assert_array_equal
 import uplift
 from tests.conftest import MACBETH
 from tests.helpers import quiet_build
-from uplift.atlas import on_grid
-from uplift.colorimetry import (
-    delta_e_1976,
-    delta_e_spectra,
-    in_unit_cube,
-    observer,
-    rgb_to_lab,
-)
+from uplift.atlas.resampling import on_grid
+from uplift.colorimetry import observer
+from uplift.colorimetry.delta_e import delta_e_1976, delta_e_spectra, rgb_to_lab
 from uplift.colorimetry.illuminants import SCENE_LIGHTS
-from uplift.fit import (
-    Prior,
-    Problem,
-    fit_entries,
-    fit_prior,
-    learn_base,
-    shipped_library,
-)
+from uplift.colorimetry.sensor import in_unit_cube
+from uplift.fit.base import learn_base
+from uplift.fit.entries import fit_entries
+from uplift.fit.families import shipped_library
+from uplift.fit.prior import Prior, fit_prior
+from uplift.fit.problem import Problem
 from uplift.fit.seeds import (
     CORNER_SHARE,
     DIMS,
@@ -44,8 +37,9 @@ from uplift.fit.seeds import (
     near_entry,
     seed,
 )
-from uplift.lattice import AXES, Lattice, axis_nodes
-from uplift.models import Moments, reflectance
+from uplift.lattice.lattice import AXES, Lattice, axis_nodes
+from uplift.models.model import reflectance
+from uplift.models.moments import Moments
 
 LATTICE = Lattice(np.linspace(0, 1, 6))
 atlases = arrays(

@@ -15,7 +15,10 @@ from tests.helpers import run_python
 from uplift import build, load
 from uplift.fit.batch import CPU_ROWS, map_batches
 from uplift.fit.solver import LeastChange, solve
-from uplift.models import Moments, Sigmoid, evaluate, forward_map
+from uplift.models.minimum_norm import forward_map
+from uplift.models.model import evaluate
+from uplift.models.moments import Moments
+from uplift.models.sigmoid import Sigmoid
 from uplift.pipeline.options import CUSTOM
 
 RNG = np.random.default_rng(2)

@@ -27,18 +27,21 @@ import uplift
 from tests.fuzz.commands import KEPT
 from tests.fuzz.fuzzing import Random, choose
 from tests.fuzz.programs import c_reflectances
-from uplift.atlas import write_atlas
-from uplift.colorimetry import Sensor, tables
+from uplift.atlas.sources import write_atlas
+from uplift.colorimetry import tables
+from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Array, Mask
 from uplift.common.errors import UpliftWarning
 from uplift.common.files import write_text
-from uplift.cube import CubeData, digest
+from uplift.cube.data import CubeData
+from uplift.cube.file import digest
 from uplift.extras import texture
-from uplift.extras.export import moved_cells, rounding_error
+from uplift.extras.export.program_table import moved_cells
+from uplift.extras.export.rounding import rounding_error
 from uplift.fit import base, batch
 from uplift.lab.timing import environment
-from uplift.lattice import CORNERS, Lattice
-from uplift.lookup import MODES
+from uplift.lattice.lattice import CORNERS, Lattice
+from uplift.lookup.interpolate import MODES
 
 SPACES = (*tables.names("RGB space"), *["camera"] * 12)
 OBSERVERS = (

@@ -23,7 +23,8 @@ from tests.fuzz.fuzzing import Random, Seeds, choose, mutate
 from tests.fuzz.readers import CUBES, READERS, change_content
 from tests.parts import SANITIZED
 from uplift.common.arrays import StrPath
-from uplift.cube import CubeData, write
+from uplift.cube.data import CubeData
+from uplift.cube.file import write
 from uplift.extras.export.module import write_module
 from uplift.extras.export.runtime import HEADER, write_header
 

@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from uplift.common.arrays import Array
-from uplift.cube import CubeData
+from uplift.cube.data import CubeData
 from uplift.extras.export.program import cube_program
 from uplift.extras.export.program_table import make_table
 

@@ -23,25 +23,31 @@ from tests.cube.cube_files import forge, header_length, with_header, with_header
 from tests.extras.texture.exr_bytes import attribute, exr_bytes
 from tests.extras.texture.image_bytes import BT2020, hdr_bytes, tiff_bytes
 from tests.fuzz.fuzzing import ROOT, Random, Seeds, Target, choose, mutate, mutated
-from uplift.atlas import read_atlas, resample, write_atlas
+from uplift.atlas.resampling import resample
+from uplift.atlas.sources import read_atlas, write_atlas
 from uplift.colorimetry import observer
 from uplift.colorimetry.gamut import METHODS, map_to_gamut
 from uplift.common.colour_science import colour_science
 from uplift.common.errors import UpliftError
 from uplift.common.files import file_digest
-from uplift.cube import CubeData, read, summarise
+from uplift.cube.data import CubeData
+from uplift.cube.file import read, summarise
 from uplift.cube.schema import POINTS
 from uplift.extras.colour.query import query
-from uplift.extras.palette import design, matrix, read_palette, standard_model
+from uplift.extras.palette.design import design, matrix
+from uplift.extras.palette.factor import standard_model
+from uplift.extras.palette.spec import read_palette
 from uplift.extras.report.rebuild import recorded_atlas
-from uplift.extras.scene.plan import read_scene_file
-from uplift.extras.scene.plan.files import FORMAT, read_plan
-from uplift.extras.texture import Counts, convert
+from uplift.extras.scene.plan.files import FORMAT, read_plan, read_scene_file
+from uplift.extras.texture.colours import Counts
+from uplift.extras.texture.conversion import convert
 from uplift.extras.texture.uplifter import Converter
 from uplift.lab.chart.recommendation import Requirement, recommend_cube
 from uplift.lab.chart.results import criteria, read_chart
-from uplift.lattice import Lattice, PointTable
-from uplift.lookup import MODES, Cube, load
+from uplift.lattice.lattice import Lattice
+from uplift.lattice.point_table import PointTable
+from uplift.lookup.cube import Cube, load
+from uplift.lookup.interpolate import MODES
 from uplift.pipeline.options import Options
 
 # --- atlases ---

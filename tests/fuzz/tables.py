@@ -15,7 +15,8 @@ from pathlib import Path
 
 import numpy as np
 
-from uplift.atlas import Atlas, read_atlas
+from uplift.atlas.atlas import Atlas
+from uplift.atlas.sources import read_atlas
 from uplift.common.errors import AtlasError, UpliftWarning
 
 NM = np.arange(350.0, 901.0, 10.0)

@@ -13,7 +13,7 @@ import pytest
 
 import uplift
 from tests.fuzz.fuzzing import ROOT
-from uplift.cube import digest
+from uplift.cube.file import digest
 
 pytestmark = pytest.mark.skipif(
     sys.platform != "linux", reason="needs SIGKILL and /proc"

@@ -14,7 +14,9 @@ from tests.conftest import MACBETH
 from tests.helpers import raises, warns
 from tests.pages import Page, markers, tooltips
 from tools.render_docs import pick, where
-from uplift.atlas import Atlas, on_grid, read_atlas
+from uplift.atlas.atlas import Atlas
+from uplift.atlas.resampling import on_grid
+from uplift.atlas.sources import read_atlas
 from uplift.colorimetry.delta_e import delta_e_2000, lab
 from uplift.common.errors import AtlasError, OptionError, UpliftError
 from uplift.extras.scene.representations import find_representation

@@ -12,8 +12,9 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 from tests.cube.hand_made import table
 from uplift.fit.seeds import MAX_HALF_WIDTH, half_widths, outside_half_widths
-from uplift.lattice import MARGIN, EntryBoxes, Lattice, OutsideBoxes
-from uplift.lookup import around
+from uplift.lattice.entry_boxes import MARGIN, EntryBoxes, OutsideBoxes
+from uplift.lattice.lattice import Lattice
+from uplift.lookup.interpolate import around
 
 LATTICE = Lattice(np.linspace(0, 1, 7) ** 2)
 unit = st.floats(0, 1)

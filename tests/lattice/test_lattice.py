@@ -9,7 +9,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 from tests.helpers import raises
 from uplift.common.errors import OptionError
-from uplift.lattice import Lattice
+from uplift.lattice.lattice import Lattice
 
 UNEVEN = Lattice(np.array([0.0, 0.01, 0.2, 0.7, 1.0]))
 colours = arrays(float, (7, 3), elements=st.floats(0, 1))

@@ -7,8 +7,9 @@ from numpy.testing import assert_allclose
 from tests.cube.hand_made import hand_made
 from tests.helpers import raises
 from uplift.common.errors import ColourError, OptionError
-from uplift.lattice import Lattice
-from uplift.lookup import Cube, bulk
+from uplift.lattice.lattice import Lattice
+from uplift.lookup import bulk
+from uplift.lookup.cube import Cube
 
 AT = np.linspace(380, 780, 9)
 CUBES = ["macbeth_cube", "small_cube", "plain_cube", "small_sigmoid_cube"]

@@ -16,8 +16,9 @@ import uplift
 from tests.extras.paint.invented import invented
 from tests.helpers import raises
 from uplift import bulk, load, load_emission, read_atlas
-from uplift.atlas import on_grid
-from uplift.colorimetry import delta_e_2000, observer
+from uplift.atlas.resampling import on_grid
+from uplift.colorimetry import observer
+from uplift.colorimetry.delta_e import delta_e_2000
 from uplift.colorimetry.illuminants import Lamp
 from uplift.common.errors import (
     ColourError,
@@ -25,11 +26,12 @@ from uplift.common.errors import (
     UnknownNameError,
     UpliftError,
 )
-from uplift.extras.photographs import prepare_samples
+from uplift.extras.photographs.samples import prepare_samples
 from uplift.extras.scene.wavelengths.sampling import make_setup
-from uplift.extras.texture import prepare_lights
-from uplift.lookup import BLOCK, MODES, find_file
-from uplift.lookup.cube import DEFAULT, PACKAGED, TABULATED
+from uplift.extras.texture.emission import prepare_lights
+from uplift.lookup.blocks import BLOCK
+from uplift.lookup.cube import DEFAULT, PACKAGED, TABULATED, find_file
+from uplift.lookup.interpolate import MODES
 
 RED = (0.6, 0.03, 0.01)
 AT = [450.0, 550.0, 650.0]

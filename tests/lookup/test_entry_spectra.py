@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from uplift.lookup import MODES, extended_multipliers
-from uplift.models import evaluate, reflectance
+from uplift.lookup.interpolate import MODES, extended_multipliers
+from uplift.models.model import evaluate, reflectance
 
 CONTINUOUS = ("spectra", "moments", "refined")
 

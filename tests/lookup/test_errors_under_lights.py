@@ -12,13 +12,17 @@ from numpy.testing import assert_allclose
 import uplift
 from tests.conftest import ATLASES
 from tests.helpers import raises, without_evidence
-from uplift.atlas import Atlas, read_atlas, resample
-from uplift.colorimetry import delta_e_spectra, in_unit_cube, lab, observer
+from uplift.atlas.atlas import Atlas
+from uplift.atlas.resampling import resample
+from uplift.atlas.sources import read_atlas
+from uplift.colorimetry import observer
+from uplift.colorimetry.delta_e import delta_e_spectra, lab
+from uplift.colorimetry.sensor import in_unit_cube
 from uplift.common.errors import OptionError, UnknownNameError
-from uplift.cube import read, write
+from uplift.cube.file import read, write
 from uplift.extras.looks.lab_errors import LIKELY, lab_errors
 from uplift.extras.report.measures import check_calibration
-from uplift.lookup import Cube
+from uplift.lookup.cube import Cube
 
 LIGHTS = [observer.light(name) for name in ("FL2", "FL11", "LED-RGB1", "HP1")]
 """Two of them are not among the lights that entries are fitted to."""

@@ -7,9 +7,10 @@ import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
 import uplift
-from uplift.colorimetry import delta_e_rgb, solid
+from uplift.colorimetry.delta_e import delta_e_rgb
+from uplift.colorimetry.object_colours import solid
 from uplift.lookup.refine import with_colours, within_solid
-from uplift.models import evaluate
+from uplift.models.model import evaluate
 
 GREYS = np.linspace(0, 1, 33)[:, None].repeat(3, axis=1)
 EXACT_MODES = ("spectra", "refined")

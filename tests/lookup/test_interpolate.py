@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from uplift.lookup import refined_multipliers
+from uplift.lookup.interpolate import refined_multipliers
 from uplift.lookup.refine import TOLERANCE
-from uplift.models import reflectance
+from uplift.models.model import reflectance
 
 
 def random_colours(count):

@@ -9,7 +9,8 @@ from numpy.testing import assert_allclose, assert_array_equal
 import uplift
 from tests.helpers import near_black, raises, with_absent_points
 from uplift.common.errors import ColourError, OptionError
-from uplift.lookup import MODES, Cube
+from uplift.lookup.cube import Cube
+from uplift.lookup.interpolate import MODES
 
 RGB = np.random.default_rng(8).random((400, 3))
 

@@ -15,7 +15,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 import uplift
 from tests.helpers import near_black, warns, with_absent_points
-from uplift.lookup import Cube
+from uplift.lookup.cube import Cube
 from uplift.lookup.interpolate import is_inexact
 from uplift.lookup.traceable import evaluate, traceable, traceable_coefficients
 

@@ -13,8 +13,8 @@ from numpy.testing import assert_allclose, assert_array_equal
 from tests.helpers import near_black, raises, with_absent_points
 from tests.lookup.test_bulk import CUBES, colours
 from uplift.common.errors import ColourError, OptionError
-from uplift.lattice import Lattice
-from uplift.lookup import Cube
+from uplift.lattice.lattice import Lattice
+from uplift.lookup.cube import Cube
 from uplift.lookup.traceable import evaluate, traceable, traceable_coefficients
 
 AT = np.linspace(380, 780, 9)

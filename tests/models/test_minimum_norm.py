@@ -5,13 +5,13 @@ import numpy as np
 from numpy.testing import assert_allclose
 
 import uplift.fit.batch  # noqa: F401  (makes the forward map a pytree)
-from uplift.models import (
-    Moments,
+from uplift.models.minimum_norm import (
     anchored_step,
     forward_map,
     minimum_norm_step,
     solve_damped,
 )
+from uplift.models.moments import Moments
 
 MODEL = Moments(9)
 RNG = np.random.default_rng(8)

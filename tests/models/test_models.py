@@ -10,11 +10,13 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 from numpy.testing import assert_allclose, assert_array_equal
 
-import uplift.models
 from tests.helpers import raises
 from uplift.common.errors import OptionError, UnknownNameError
-from uplift.models import Moments, Sigmoid, evaluate, from_description
-from uplift.models.moments import WARPS, multipliers_of_rounded
+from uplift.models import registry
+from uplift.models.model import evaluate
+from uplift.models.moments import WARPS, Moments, multipliers_of_rounded
+from uplift.models.registry import from_description
+from uplift.models.sigmoid import Sigmoid
 from uplift.pipeline import options
 
 GRID = np.arange(380.0, 781.0, 5.0)
@@ -183,4 +185,4 @@ def test_moments_that_rounding_moved_outside_return():
 
 
 def test_builds_name_the_models_that_files_have():
-    assert set(uplift.models.MODELS) == set(options.MODELS)
+    assert set(registry.MODELS) == set(options.MODELS)

@@ -14,11 +14,14 @@ from threadpoolctl import threadpool_info, threadpool_limits
 import uplift
 from tests.conftest import MACBETH
 from tests.helpers import quiet_build, raises, warns
-from uplift.atlas import Atlas, Entry, on_grid, read_atlas
-from uplift.colorimetry import delta_e_rgb, delta_e_spectra, observer
+from uplift.atlas.atlas import Atlas, Entry
+from uplift.atlas.resampling import on_grid
+from uplift.atlas.sources import read_atlas
+from uplift.colorimetry import observer
+from uplift.colorimetry.delta_e import delta_e_rgb, delta_e_spectra
 from uplift.common.errors import AtlasError, OptionError, UnknownNameError
-from uplift.cube import digest
-from uplift.lattice import Status
+from uplift.cube.file import digest
+from uplift.lattice.point_table import Status
 from uplift.pipeline.options import Options, check_memory
 
 GRID = observer.grid()

@@ -10,7 +10,7 @@ from tests.helpers import raises
 from uplift.colorimetry import observer
 from uplift.colorimetry.camera import CAMERA
 from uplift.common.errors import ColourError, CubeFileError
-from uplift.cube import digest
+from uplift.cube.file import digest
 from uplift.extras.colour.query import query, query_xyz
 from uplift.extras.export.coeff import write_coeff
 from uplift.extras.report.rebuild import rebuild

@@ -11,12 +11,13 @@ from numpy.testing import assert_allclose, assert_array_equal
 import uplift
 from tests.conftest import ATLASES
 from tests.helpers import raises, warns
-from uplift.atlas import Atlas, Entry, read_atlas
-from uplift.colorimetry import delta_e_spectra, rgb_to_lab
+from uplift.atlas.atlas import Atlas, Entry
+from uplift.atlas.sources import read_atlas
+from uplift.colorimetry.delta_e import delta_e_spectra, rgb_to_lab
 from uplift.colorimetry.observer import light
 from uplift.common.errors import CubeFileError, OptionError, UnknownNameError
 from uplift.extras.report.rebuild import rebuild
-from uplift.lookup import load
+from uplift.lookup.cube import load
 
 SMALL = {"dim": 8, "coefficients": 9}
 TCS = ATLASES / "tcs.txt"

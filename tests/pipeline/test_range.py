@@ -10,8 +10,9 @@ from numpy.testing import assert_allclose
 
 import uplift
 from tests.helpers import quiet_build
-from uplift.atlas import Atlas, Entry, read_atlas
-from uplift.colorimetry import delta_e_rgb
+from uplift.atlas.atlas import Atlas, Entry
+from uplift.atlas.sources import read_atlas
+from uplift.colorimetry.delta_e import delta_e_rgb
 from uplift.colorimetry.observer import on_range
 from uplift.extras.relight.relight import relight
 from uplift.extras.report.assessment import assess

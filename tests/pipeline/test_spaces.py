@@ -11,7 +11,7 @@ from tests.fuzz.builds import little_work
 from tests.fuzz.programs import c_reflectances
 from tests.parts import CC, need
 from uplift.colorimetry import tables
-from uplift.cube import digest
+from uplift.cube.file import digest
 
 SPACES = sorted(
     {tables.stated_name("RGB space", name) for name in tables.names("RGB space")}

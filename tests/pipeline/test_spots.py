@@ -8,10 +8,11 @@ import uplift
 from benchmarks.materials import MIXTURE, SHIPPED, materials
 from tests.conftest import MACBETH
 from tests.helpers import quiet_build, warns
-from uplift.colorimetry import delta_e_spectra, observer
+from uplift.colorimetry import observer
+from uplift.colorimetry.delta_e import delta_e_spectra
 from uplift.extras.report.measures import delta_e_under
 from uplift.extras.texture.scene_colours import ColourSet
-from uplift.lookup import Cube
+from uplift.lookup.cube import Cube
 
 STEEP = (152, 78, 119)
 """Codes in a cell of the mixed atlas that would be steep."""

@@ -6,7 +6,8 @@ import pytest
 from numpy.testing import assert_allclose
 
 from tests.helpers import raises
-from uplift.atlas import on_grid, read_atlas
+from uplift.atlas.resampling import on_grid
+from uplift.atlas.sources import read_atlas
 from uplift.common.errors import OutputError
 from uplift.extras.colour.srgb import encode
 from uplift.samples import copy_samples, sample_names, sample_path

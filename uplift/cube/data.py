@@ -10,13 +10,17 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from uplift.colorimetry import Sensor, Solid, rgb_to_lab, solid
+from uplift.colorimetry.delta_e import rgb_to_lab
 from uplift.colorimetry.likely_errors import LeftOut, familiar_distance
+from uplift.colorimetry.object_colours import Solid, solid
+from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Array, Indices, Mask
 from uplift.common.errors import OptionError
 from uplift.common.text import pluralise
-from uplift.lattice import EntryBoxes, Lattice, OutsideBoxes, PointTable
-from uplift.models import Model, evaluate
+from uplift.lattice.entry_boxes import EntryBoxes, OutsideBoxes
+from uplift.lattice.lattice import Lattice
+from uplift.lattice.point_table import PointTable
+from uplift.models.model import Model, evaluate
 
 MAX_SIZE = 500.0
 """Largest Σ |p| of the multipliers of nodes that have not their own colours, in

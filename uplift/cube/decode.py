@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from uplift.colorimetry import Sensor
 from uplift.colorimetry.likely_errors import LeftOut
+from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Array, Indices
 from uplift.common.text import pluralise
 from uplift.cube.container import (
@@ -27,8 +27,10 @@ from uplift.cube.schema import (
     POINTS,
     SENSOR,
 )
-from uplift.lattice import CORNERS, Lattice, PointTable
-from uplift.models import Model, from_description
+from uplift.lattice.lattice import CORNERS, Lattice
+from uplift.lattice.point_table import PointTable
+from uplift.models.model import Model
+from uplift.models.registry import from_description
 
 MAX_POINTS = 1 << 27
 """Nodes of the largest lattice of a sparse file, as a small file must not claim all

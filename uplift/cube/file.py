@@ -16,7 +16,7 @@ from uplift.cube.schema import (
     POINTS,
     SENSOR,
 )
-from uplift.models import Model
+from uplift.models.model import Model
 
 FORMAT = "uplift cube"
 VERSION = 4

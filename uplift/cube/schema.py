@@ -3,7 +3,7 @@
 """
 
 from uplift.cube.container import RANGE, Stored
-from uplift.lattice import Status
+from uplift.lattice.point_table import Status
 
 MIN_THRESHOLD = 1e-12
 """Linear RGB. Smaller distances are lost in the rounding of double precision."""

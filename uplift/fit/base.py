@@ -18,7 +18,8 @@ from importlib.resources import files
 
 import numpy as np
 
-from uplift.colorimetry import Light, in_unit_cube, rgb_to_lab
+from uplift.colorimetry.delta_e import rgb_to_lab
+from uplift.colorimetry.sensor import Light, in_unit_cube
 from uplift.common.arrays import Array, blocks, distances
 from uplift.fit.batch import to_storage
 from uplift.fit.entries import FittedEntries, objective
@@ -26,13 +27,14 @@ from uplift.fit.families import FILE, Family, krige_families, learn_relevance
 from uplift.fit.kriging import Points, average_close
 from uplift.fit.problem import Problem, nodes_of
 from uplift.fit.solver import solve
-from uplift.lattice import Lattice, weighted_sum
-from uplift.models import ForwardMap, Model, Moments, reflectance
+from uplift.lattice.lattice import Lattice, weighted_sum
 from uplift.models.arithmetic import blocked_matmul
 from uplift.models.brightness import BRIGHTENING, MIN_LEVEL, brightness
+from uplift.models.minimum_norm import ForwardMap
+from uplift.models.model import Model, reflectance
 
 # also imported from here
-from uplift.models.moments import moment_matrix
+from uplift.models.moments import Moments, moment_matrix
 
 GREY = 2 / 3
 """Power of the mean of x' that gives the reflectance of the grey to start from."""

@@ -15,9 +15,11 @@ from jax.sharding import Mesh, NamedSharding, PartitionSpec
 from uplift.common.arrays import Array, blocks
 from uplift.common.compilation import compiled
 from uplift.common.machine import require_xla
-from uplift.models import ForwardMap, Model, Moments
 from uplift.models.arithmetic import arctan
 from uplift.models.duality import integrate, moments_from_multipliers
+from uplift.models.minimum_norm import ForwardMap
+from uplift.models.model import Model
+from uplift.models.moments import Moments
 
 CPU_ROWS = (4096, 256)
 """Rows of a batch per device, and of a chunk, which fits the cache of a CPU."""

@@ -13,7 +13,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from uplift.colorimetry import Light, delta_e_spectra, lab, lab_jacobian
+from uplift.colorimetry.delta_e import delta_e_spectra, lab, lab_jacobian
+from uplift.colorimetry.sensor import Light
 from uplift.common.arrays import Array, Indices, Mask
 from uplift.fit.problem import Problem
 from uplift.fit.solver import (
@@ -23,7 +24,7 @@ from uplift.fit.solver import (
     iterate_rows,
     solve_in_numpy,
 )
-from uplift.models import Model
+from uplift.models.model import Model
 
 LIGHTS_WEIGHT = 0.03
 """Weight of a unit of CIE L*a*b* under a light, relative to the root-mean-square

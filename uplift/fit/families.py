@@ -21,7 +21,8 @@ from importlib.resources import files
 
 import numpy as np
 
-from uplift.colorimetry import Light, lab_jacobian
+from uplift.colorimetry.delta_e import lab_jacobian
+from uplift.colorimetry.sensor import Light
 from uplift.common.arrays import Array, Indices, blocks, distances
 from uplift.common.errors import unknown_name
 from uplift.fit.entries import LIGHTS_WEIGHT

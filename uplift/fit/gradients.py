@@ -10,11 +10,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from uplift.colorimetry import Light, Sensor, delta_e_2000, lab
+from uplift.colorimetry.delta_e import delta_e_2000, lab
+from uplift.colorimetry.sensor import Light, Sensor
 from uplift.common.arrays import Array, Indices, Mask, Values, blocks
 from uplift.fit.growth import Growth
-from uplift.lattice import CORNERS, NEIGHBOURS, Lattice
-from uplift.models import evaluate
+from uplift.lattice.lattice import CORNERS, NEIGHBOURS, Lattice
+from uplift.models.model import evaluate
 
 LARGEST_EXCESS = 1.0
 """ΔE00 by which a light's step of an 8-bit code may exceed that under the light of the

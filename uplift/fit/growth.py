@@ -27,7 +27,7 @@ from uplift.common.arrays import Array, Indices, Mask, blocks, largest
 from uplift.common.progress import Progress, ProgressCallback
 from uplift.fit.problem import Nodes, Problem
 from uplift.fit.solver import Solution
-from uplift.lattice import NOT_FITTED
+from uplift.lattice.point_table import NOT_FITTED
 from uplift.models.arithmetic import blocked_matmul
 
 MAX_PASSES = 24

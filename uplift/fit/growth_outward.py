@@ -11,7 +11,7 @@ from uplift.common.arrays import Indices, blocks
 from uplift.common.progress import ProgressCallback
 from uplift.fit.growth import BLOCK_POINTS, Expected, Growth, retry
 from uplift.fit.problem import Nodes, Problem
-from uplift.lattice import Lattice
+from uplift.lattice.lattice import Lattice
 
 
 def grow_outward(

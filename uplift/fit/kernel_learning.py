@@ -9,7 +9,7 @@ from itertools import product
 
 import numpy as np
 
-from uplift.colorimetry import delta_e_2000_weights, lab, lab_jacobian
+from uplift.colorimetry.delta_e import delta_e_2000_weights, lab, lab_jacobian
 from uplift.common.arrays import Array
 from uplift.fit.kriging import (
     DEFAULT,

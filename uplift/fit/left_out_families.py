@@ -7,8 +7,9 @@ from functools import partial
 
 import numpy as np
 
-from uplift.colorimetry import delta_e_spectra, in_unit_cube, rgb_to_lab
+from uplift.colorimetry.delta_e import delta_e_spectra, rgb_to_lab
 from uplift.colorimetry.likely_errors import ExpectedError, LeftOut, expected_error
+from uplift.colorimetry.sensor import in_unit_cube
 from uplift.common.arrays import Array
 from uplift.fit.base import (
     family_samples,
@@ -17,8 +18,9 @@ from uplift.fit.base import (
 )
 from uplift.fit.families import STAND_IN, Family, krige_families
 from uplift.fit.problem import Problem
-from uplift.models import Moments, evaluate
 from uplift.models.brightness import brightness
+from uplift.models.model import evaluate
+from uplift.models.moments import Moments
 
 MIN_FAMILIES = 3
 """Families without which nothing is known of the next one."""

@@ -10,19 +10,20 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from uplift.colorimetry import Sensor, delta_e_spectra, rgb_to_lab
+from uplift.colorimetry.delta_e import delta_e_spectra, rgb_to_lab
 from uplift.colorimetry.likely_errors import LENGTH, ExpectedError, expected_error
+from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Array, Mask, largest
 from uplift.fit.base import Base, learn_base
 from uplift.fit.entries import FittedEntries
 from uplift.fit.kernel_learning import MIN_ENTRIES, learn_kriging, visible_change
 from uplift.fit.kriging import DEFAULT, Kernel, Kriging, kernel_sums, krige
 from uplift.fit.problem import Problem
-from uplift.lattice import Lattice
-from uplift.models import Model, Moments, evaluate, reflectance
+from uplift.lattice.lattice import Lattice
 from uplift.models.brightness import brightness
 from uplift.models.duality import MAX_MULTIPLIER
-from uplift.models.moments import moment_matrix
+from uplift.models.model import Model, evaluate, reflectance
+from uplift.models.moments import Moments, moment_matrix
 
 MAX_PASSES = 32
 DETERMINED = Kernel(length=6.0, noise=1e-3)

@@ -7,11 +7,13 @@ from functools import cached_property
 
 import numpy as np
 
-from uplift.colorimetry import Light, Sensor, solid, toward_grey
+from uplift.colorimetry.object_colours import solid, toward_grey
+from uplift.colorimetry.sensor import Light, Sensor
 from uplift.common.arrays import Array, Indices, blocks
 from uplift.fit.solver import LeastChange, Method, Solution, solve
-from uplift.lattice import CORNERS, Lattice
-from uplift.models import ForwardMap, Model, forward_map
+from uplift.lattice.lattice import CORNERS, Lattice
+from uplift.models.minimum_norm import ForwardMap, forward_map
+from uplift.models.model import Model
 
 BLOCK_NODES = 1 << 15
 """Nodes that are tested at a time."""

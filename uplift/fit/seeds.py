@@ -9,14 +9,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from uplift.colorimetry import delta_e_1976, delta_e_spectra, rgb_to_lab
+from uplift.colorimetry.delta_e import delta_e_1976, delta_e_spectra, rgb_to_lab
 from uplift.common.arrays import Array, Indices, Mask
 from uplift.fit.entries import FittedEntries
 from uplift.fit.neighbours import nearest_other
 from uplift.fit.prior import Prior, blended
 from uplift.fit.problem import Problem
-from uplift.lattice import AXES, CORNERS, Lattice, axis_nodes, weighted_sum
-from uplift.models import evaluate
+from uplift.lattice.lattice import AXES, CORNERS, Lattice, axis_nodes, weighted_sum
+from uplift.models.model import evaluate
 
 NEAR = 8.0
 """ΔE*ab up to which a corner is near its entry."""

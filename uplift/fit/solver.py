@@ -23,9 +23,9 @@ from numpy.typing import NDArray
 from uplift.common.arrays import Array, Indices, blocks, largest
 from uplift.common.compilation import compiled
 from uplift.fit.batch import map_batches
-from uplift.models import ForwardMap, anchored_step
 from uplift.models.arithmetic import blocked_matmul
 from uplift.models.duality import MAX_MULTIPLIER
+from uplift.models.minimum_norm import ForwardMap, anchored_step
 
 FIRST_DAMPING = 1e-6
 """Initial μ; divided by four after a successful step, multiplied by four after a

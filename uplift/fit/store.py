@@ -14,7 +14,7 @@ from uplift.fit.growth import BLOCK_POINTS, Growth
 from uplift.fit.prior import Prior
 from uplift.fit.seeds import Seeds
 from uplift.fit.solver import residuals
-from uplift.lattice import NO_ENTRY, NOT_FITTED, PointTable, Status
+from uplift.lattice.point_table import NO_ENTRY, NOT_FITTED, PointTable, Status
 
 SINGLE: np.dtype[Any] = np.dtype(np.float32)
 DOUBLE: np.dtype[Any] = np.dtype(np.float64)

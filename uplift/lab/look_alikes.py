@@ -4,7 +4,7 @@ import numpy as np
 from scipy.spatial import KDTree
 
 from uplift.common.arrays import Array
-from uplift.fit import families_with, shipped_library
+from uplift.fit.families import families_with, shipped_library
 
 LOOK_ALIKE = 0.02
 """rms difference within which spectra look alike."""

@@ -13,8 +13,10 @@ from typing import Any
 
 import numpy as np
 
-from uplift.colorimetry import Light, Sensor, delta_e_2000, lab, observer
+from uplift.colorimetry import observer
+from uplift.colorimetry.delta_e import delta_e_2000, lab
 from uplift.colorimetry.illuminants import DEFAULT_ILLUMINANT
+from uplift.colorimetry.sensor import Light, Sensor
 from uplift.common.arrays import Array, Values
 from uplift.common.colour_science import colour_science
 from uplift.lab.description import Description

@@ -14,8 +14,10 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from uplift.atlas import Atlas, resample
-from uplift.colorimetry import Light, Sensor, in_unit_cube, observer
+from uplift.atlas.atlas import Atlas
+from uplift.atlas.resampling import resample
+from uplift.colorimetry import observer
+from uplift.colorimetry.sensor import Light, Sensor, in_unit_cube
 from uplift.common.arrays import Array, Indices
 from uplift.extras.colour.light_sets import HELD_OUT_LIGHTS
 from uplift.extras.report.measures import (
@@ -24,7 +26,7 @@ from uplift.extras.report.measures import (
     mean_p95_max,
     rms_difference,
 )
-from uplift.fit import shipped_library
+from uplift.fit.families import shipped_library
 
 ALL_LIGHTS = "all"
 """Light of a row that pools all lights."""

@@ -11,11 +11,16 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
 
-from uplift.colorimetry import Sensor, as_rgb, in_unit_cube, raise_out_of_gamut
-from uplift.colorimetry.sensor import SLACK
+from uplift.colorimetry.sensor import (
+    SLACK,
+    Sensor,
+    as_rgb,
+    in_unit_cube,
+    raise_out_of_gamut,
+)
 from uplift.common.arrays import Array, as_array, as_nm
 from uplift.common.errors import ColourError, OptionError
-from uplift.cube import CubeData
+from uplift.cube.data import CubeData
 
 BLOCK = 4096
 """Rows per block: their temporary arrays fit into a core's cache."""

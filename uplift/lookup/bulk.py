@@ -14,7 +14,7 @@ import jax.numpy as jnp
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from uplift.colorimetry import Sensor, as_rgb
+from uplift.colorimetry.sensor import Sensor, as_rgb
 from uplift.common.arrays import Floats
 from uplift.common.compilation import compiled
 from uplift.common.machine import require_xla

@@ -13,11 +13,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
 
-from uplift.colorimetry import rgb_to_lab
+from uplift.colorimetry.delta_e import rgb_to_lab
 from uplift.colorimetry.illuminants import Illuminant
 from uplift.common.arrays import Array, Mask, as_array
 from uplift.common.errors import ColourError, unknown_name
-from uplift.cube import CubeData, read, write
+from uplift.cube.data import CubeData
+from uplift.cube.file import read, write
 from uplift.lookup import blocks
 from uplift.lookup.interpolate import (
     MODES,
@@ -27,7 +28,7 @@ from uplift.lookup.interpolate import (
 )
 
 if TYPE_CHECKING:
-    from uplift.colorimetry import Light
+    from uplift.colorimetry.sensor import Light
 
 FOLDER = Path(__file__).parent
 DEFAULT = FOLDER / "default.uplift"

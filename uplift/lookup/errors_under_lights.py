@@ -12,16 +12,17 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from uplift.colorimetry import Light, delta_e_spectra, rgb_to_lab
+from uplift.colorimetry.delta_e import delta_e_spectra, rgb_to_lab
 from uplift.colorimetry.gamut import SRGB, conversion
 from uplift.colorimetry.illuminants import Illuminant
 from uplift.colorimetry.likely_errors import ExpectedError, expected_error
+from uplift.colorimetry.sensor import Light
 from uplift.common.arrays import Array
 from uplift.common.errors import OptionError
 from uplift.common.extensions import extension
-from uplift.cube import CubeData
+from uplift.cube.data import CubeData
 from uplift.lookup.interpolate import around
-from uplift.models import reflectance
+from uplift.models.model import reflectance
 
 END = 1 / 16
 """Distance in linear sRGB from the ends of [0, 1] within which few reflectances may be

@@ -24,13 +24,14 @@ from functools import partial
 
 import numpy as np
 
-from uplift.colorimetry import format_rgb
+from uplift.colorimetry.sensor import format_rgb
 from uplift.common.arrays import Array, Mask
 from uplift.common.errors import ColourError
-from uplift.cube import CubeData
-from uplift.lattice import Nodes, weighted_sum
+from uplift.cube.data import CubeData
+from uplift.lattice.entry_boxes import Nodes
+from uplift.lattice.lattice import weighted_sum
 from uplift.lookup.refine import refine_to_rgb, with_colours
-from uplift.models import Model, evaluate, reflectance
+from uplift.models.model import Model, evaluate, reflectance
 
 Mode = Callable[..., Array]
 """From a cube, linear RGB (n, 3) and wavelengths (N,) in nm to reflectance (n, N)."""

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import DTypeLike, NDArray
 
 from uplift.common.arrays import Array, Indices
-from uplift.lattice import EntryBoxes
+from uplift.lattice.entry_boxes import EntryBoxes
 from uplift.lookup.node_table import NodeTable
 
 BINS = 4096

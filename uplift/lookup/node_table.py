@@ -9,12 +9,12 @@ from functools import partial
 import numpy as np
 from numpy.typing import ArrayLike, DTypeLike
 
-from uplift.colorimetry import as_rgb
+from uplift.colorimetry.sensor import as_rgb
 from uplift.common.arrays import Array, Indices, Values
-from uplift.cube import CubeData
+from uplift.cube.data import CubeData
 from uplift.lookup import interpolate
 from uplift.lookup.blocks import Function, as_colours, blockwise
-from uplift.models import reflectance
+from uplift.models.model import reflectance
 
 Exact = Callable[[Array], tuple[Indices, Array]]
 """From linear RGB (n, 3) to the rows (m,) that are moved as nodes have not their own

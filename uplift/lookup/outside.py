@@ -9,16 +9,17 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from uplift.colorimetry import format_rgb
 from uplift.colorimetry.gamut import map_to_gamut
+from uplift.colorimetry.sensor import format_rgb
 from uplift.common.arrays import Array, Indices, Mask
 from uplift.common.errors import ColourError
-from uplift.cube import CubeData, common_sensor, digest
-from uplift.lattice import Status
+from uplift.cube.data import CubeData, common_sensor
+from uplift.cube.file import digest
+from uplift.lattice.point_table import Status
 from uplift.lookup.blocks import blockwise
 from uplift.lookup.interpolate import MODES, coefficients, refined
 from uplift.lookup.refine import refine_to_rgb
-from uplift.models import evaluate, reflectance
+from uplift.models.model import evaluate, reflectance
 
 MAPPING = "desaturate"
 """Gamut mapping to the colour from which the spectra of colours outside the RGB space

@@ -11,18 +11,19 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from uplift.colorimetry import Sensor, toward_grey
+from uplift.colorimetry.object_colours import toward_grey
+from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Array, Indices, Values
-from uplift.cube import CubeData
-from uplift.models import (
+from uplift.cube.data import CubeData
+from uplift.models.arithmetic import blocked_matmul_columns
+from uplift.models.duality import MAX_MULTIPLIER
+from uplift.models.minimum_norm import (
     ForwardMap,
-    Model,
     forward_map,
     minimum_norm_step,
     solve_damped,
 )
-from uplift.models.arithmetic import blocked_matmul_columns
-from uplift.models.duality import MAX_MULTIPLIER
+from uplift.models.model import Model
 
 TOLERANCE = 1e-8
 """Residual, max |linear RGB|, at which a colour is exact."""

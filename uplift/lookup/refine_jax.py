@@ -13,7 +13,7 @@ from jax import lax
 from numpy.typing import DTypeLike
 
 from uplift.common.arrays import Array
-from uplift.cube import CubeData
+from uplift.cube.data import CubeData
 from uplift.lookup.refine import (
     MAX_PULLS,
     PULLED,
@@ -23,7 +23,8 @@ from uplift.lookup.refine import (
     pull,
     shapes_between,
 )
-from uplift.models import Model, solve_damped
+from uplift.models.minimum_norm import solve_damped
+from uplift.models.model import Model
 
 CHUNK = 512
 """Colours that are moved together. Chunks without any that need it are skipped."""

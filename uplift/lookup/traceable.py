@@ -21,13 +21,13 @@ from uplift.common.compilation import compiled
 from uplift.common.errors import ColourError, OptionError, UpliftWarning, warn
 from uplift.common.machine import require_xla
 from uplift.common.text import pluralise
-from uplift.cube import CubeData
+from uplift.cube.data import CubeData
 from uplift.lookup.blocks import as_coefficient_count, as_float_type, as_wavelengths
 from uplift.lookup.cube import Cube
 from uplift.lookup.interpolate_jax import Grid, evaluated_cells, interpolate, make_grid
 from uplift.lookup.node_table import NodeTable, tabulate, tabulate_coefficients
 from uplift.lookup.refine_jax import Moves, make_moves, move
-from uplift.models import evaluate as evaluate_model
+from uplift.models.model import evaluate as evaluate_model
 
 __all__ = ["TraceableCube", "evaluate", "traceable", "traceable_coefficients"]
 

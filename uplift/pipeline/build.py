@@ -12,7 +12,7 @@ from uplift.colorimetry.illuminants import DEFAULT_ILLUMINANT, SCENE_LIGHTS, Ill
 from uplift.common.arrays import StrPath
 from uplift.common.extensions import extension
 from uplift.common.progress import ProgressCallback, ignore_progress
-from uplift.lookup import Cube
+from uplift.lookup.cube import Cube
 from uplift.models.moments import MAX_COUNT
 from uplift.pipeline.entries import AtlasLike
 from uplift.pipeline.options import (

@@ -10,22 +10,19 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from uplift.atlas import Atlas, Source, on_grid, read_atlas, resample
-from uplift.colorimetry import Sensor, in_unit_cube
+from uplift.atlas.atlas import Atlas, Source
+from uplift.atlas.resampling import on_grid, resample
+from uplift.atlas.sources import read_atlas
 from uplift.colorimetry.observer import COMMON_SPACES, grid, smallest_space
+from uplift.colorimetry.sensor import Sensor, in_unit_cube
 from uplift.common.arrays import Array, Indices, StrPath
 from uplift.common.errors import AtlasError, OptionError, UpliftWarning, warn
 from uplift.common.text import format_value, listed
-from uplift.cube import AtlasTable, EntrySpectra
-from uplift.fit import (
-    Family,
-    FittedEntries,
-    Problem,
-    fit_entries,
-    shipped_library,
-    with_multipliers,
-)
-from uplift.models import Model
+from uplift.cube.data import AtlasTable, EntrySpectra
+from uplift.fit.entries import FittedEntries, fit_entries, with_multipliers
+from uplift.fit.families import Family, shipped_library
+from uplift.fit.problem import Problem
+from uplift.models.model import Model
 from uplift.pipeline.options import Options
 
 AtlasLike = Atlas | StrPath | Sequence[StrPath] | None

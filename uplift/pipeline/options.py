@@ -20,9 +20,10 @@ from uplift.common.errors import OptionError, unknown_name
 from uplift.common.text import format_value
 from uplift.cube.container import RANGE
 from uplift.cube.schema import MAX_LIGHTS, MAX_THRESHOLD, MIN_THRESHOLD
-from uplift.lattice import AXES
-from uplift.models import Model, Moments, Sigmoid
-from uplift.models.moments import MAX_COUNT
+from uplift.lattice.lattice import AXES
+from uplift.models.model import Model
+from uplift.models.moments import MAX_COUNT, Moments
+from uplift.models.sigmoid import Sigmoid
 
 AUTO: Literal["auto"] = "auto"
 ModelName = Literal["moments", "sigmoid"]

@@ -4,13 +4,17 @@ spots under other lights, and are smoothed (docs/mathematics.md, 8).
 
 import numpy as np
 
-from uplift.colorimetry import Light, delta_e_spectra, observer
+from uplift.colorimetry import observer
+from uplift.colorimetry.delta_e import delta_e_spectra
+from uplift.colorimetry.sensor import Light
 from uplift.common.arrays import Array, Indices
 from uplift.common.errors import UpliftWarning, warn
 from uplift.common.text import pluralise
-from uplift.fit import Problem
-from uplift.lattice import CORNERS, EntryBoxes, PointTable, weighted_sum
-from uplift.models import reflectance
+from uplift.fit.problem import Problem
+from uplift.lattice.entry_boxes import EntryBoxes
+from uplift.lattice.lattice import CORNERS, weighted_sum
+from uplift.lattice.point_table import PointTable
+from uplift.models.model import reflectance
 from uplift.pipeline.entries import (
     Constraints,
     MeasuredEntries,

@@ -12,11 +12,11 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from uplift.colorimetry import Sensor
 from uplift.colorimetry import observer as observers
 from uplift.colorimetry.camera import Camera
 from uplift.colorimetry.illuminants import ERROR_ILLUMINANT
 from uplift.colorimetry.likely_errors import LeftOut
+from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Indices, Mask
 from uplift.common.errors import UpliftWarning, warn
 from uplift.common.extensions import extension
@@ -24,25 +24,21 @@ from uplift.common.machine import single_threaded_blas
 from uplift.common.progress import ProgressCallback, ignore_progress
 from uplift.common.text import pluralise
 from uplift.common.version import version
-from uplift.cube import AtlasTable, CubeData
-from uplift.fit import (
-    Family,
-    Prior,
-    Problem,
-    family_errors,
-    fit_prior,
-    grow_outward,
-    growth,
-    learn_base,
-    leave_out_families,
-    nodes_of,
-    seeds,
-)
+from uplift.cube.data import AtlasTable, CubeData
+from uplift.fit import growth, seeds
+from uplift.fit.base import learn_base
+from uplift.fit.families import Family
 from uplift.fit.gradients import nodes_around, soften
+from uplift.fit.growth_outward import grow_outward
+from uplift.fit.left_out_families import family_errors, leave_out_families
+from uplift.fit.prior import Prior, fit_prior
+from uplift.fit.problem import Problem, nodes_of
 from uplift.fit.store import store
-from uplift.lattice import EntryBoxes, Lattice, PointTable, axis_nodes
-from uplift.lookup import Cube
-from uplift.models import Model
+from uplift.lattice.entry_boxes import EntryBoxes
+from uplift.lattice.lattice import Lattice, axis_nodes
+from uplift.lattice.point_table import PointTable
+from uplift.lookup.cube import Cube
+from uplift.models.model import Model
 from uplift.pipeline import entries
 from uplift.pipeline.entries import AtlasLike, Constraints, MeasuredEntries, Spectra
 from uplift.pipeline.options import (

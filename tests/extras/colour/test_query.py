@@ -12,14 +12,19 @@ from numpy.testing import assert_allclose, assert_array_equal
 import uplift
 from tests.conftest import MACBETH
 from tests.helpers import raises
-from uplift.atlas import on_grid, read_atlas
-from uplift.colorimetry import delta_e_spectra, in_unit_cube, solid
+from uplift.atlas.resampling import on_grid
+from uplift.atlas.sources import read_atlas
+from uplift.colorimetry.delta_e import delta_e_spectra
+from uplift.colorimetry.object_colours import solid
 from uplift.colorimetry.observer import light
+from uplift.colorimetry.sensor import in_unit_cube
 from uplift.common.errors import ColourError, UnknownNameError
-from uplift.cube import write
+from uplift.cube.file import write
 from uplift.extras.colour.query import query, query_xyz
-from uplift.lattice import Status
-from uplift.lookup import BLOCK, MODES, Cube
+from uplift.lattice.point_table import Status
+from uplift.lookup.blocks import BLOCK
+from uplift.lookup.cube import Cube
+from uplift.lookup.interpolate import MODES
 
 D65_WAVELENGTHS = colour.SpectralShape(380, 780, 5)
 

@@ -5,7 +5,7 @@ import pytest
 
 import uplift
 from tests.helpers import warns
-from uplift.atlas import Atlas, Entry
+from uplift.atlas.atlas import Atlas, Entry
 from uplift.common.errors import OptionError
 from uplift.extras.emission.build import build_emission
 from uplift.extras.emission.lamps import read_lamps

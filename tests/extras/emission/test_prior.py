@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from uplift.atlas import on_grid, read_atlas
+from uplift.atlas.resampling import on_grid
+from uplift.atlas.sources import read_atlas
 from uplift.colorimetry import observer
 from uplift.extras.emission.discs import Lamps, lamp_entries
 from uplift.extras.emission.fit import locus_lattice, mix_with_locus, nearest_lights

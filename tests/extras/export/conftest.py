@@ -7,9 +7,9 @@ from dataclasses import replace
 import pytest
 
 from tests.helpers import with_points
-from uplift.cube import EntrySpectra
-from uplift.lookup import Cube, load
-from uplift.models import Moments
+from uplift.cube.data import EntrySpectra
+from uplift.lookup.cube import Cube, load
+from uplift.models.moments import Moments
 
 
 @pytest.fixture(scope="session", params=["vision", "colour"])

@@ -12,7 +12,7 @@ import numpy as np
 from tests.parts import CC, SANITIZED, SANITIZERS, need
 from uplift.common.arrays import StrPath
 from uplift.extras.export.runtime import HEADER, write_header
-from uplift.lookup import Cube
+from uplift.lookup.cube import Cube
 
 OK = 0
 MAIN = r"""

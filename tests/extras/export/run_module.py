@@ -10,7 +10,7 @@ import numpy as np
 from tests.extras.export.run_header import FOLDER, Answers, run
 from tests.parts import NODE, need
 from uplift.extras.export.module import write_module
-from uplift.lookup import Cube
+from uplift.lookup.cube import Cube
 
 MAIN = """
 import { readFileSync, writeSync } from "node:fs";

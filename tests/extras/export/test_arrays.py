@@ -8,11 +8,13 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 from tests.helpers import near_black, raises, with_absent_points
 from uplift.common.errors import ColourError, OptionError
-from uplift.cube import contents
-from uplift.extras.export import write_coeff, write_npz, write_program
+from uplift.cube.file import contents
+from uplift.extras.export.arrays import write_npz
+from uplift.extras.export.coeff import write_coeff
+from uplift.extras.export.program import write_program
 from uplift.lab.study.sensitivity import perturb
-from uplift.lookup import Cube
-from uplift.models import evaluate, reflectance
+from uplift.lookup.cube import Cube
+from uplift.models.model import evaluate, reflectance
 
 
 @pytest.fixture

@@ -6,8 +6,12 @@ import pytest
 
 from uplift.colorimetry.observer import sensor
 from uplift.common.errors import OptionError, OutputError, UnknownNameError
-from uplift.extras import export
 from uplift.extras.emission.lookup import load_emission
+from uplift.extras.export.coeff import write_coeff
+from uplift.extras.export.film import write_film
+from uplift.extras.export.light_program import write_light_program
+from uplift.extras.export.lut import write_lut
+from uplift.extras.export.program import write_program
 
 
 @pytest.fixture(scope="module")
@@ -26,12 +30,12 @@ def cubes(small_cube):
     ("write", "source", "name", "options", "error"),
     [
         *(
-            (export.write_coeff, "data", "a.coeff", {"res": res}, OptionError)
+            (write_coeff, "data", "a.coeff", {"res": res}, OptionError)
             for res in (1, 257)
         ),
         *(
             (
-                export.write_coeff,
+                write_coeff,
                 "wide",
                 "a.cpp",
                 {"layout": each, "res": 2},
@@ -39,30 +43,30 @@ def cubes(small_cube):
             )
             for each in ("pbrt", "luisa")
         ),
-        (export.write_film, "cube", "a.npy", {"res": 1}, OptionError),
+        (write_film, "cube", "a.npy", {"res": 1}, OptionError),
         *(
-            (export.write_film, "cube", "a.npy", {"share": share}, OptionError)
+            (write_film, "cube", "a.npy", {"share": share}, OptionError)
             for share in (1.0, float("nan"))
         ),
-        (export.write_film, "cube", "a.npy", {"light": "moonlight"}, UnknownNameError),
-        (export.write_film, "cube", "a.npy", {"res": 4}, OutputError),
-        (export.write_light_program, "lights", "a.h", {"style": "hlsl"}, OptionError),
+        (write_film, "cube", "a.npy", {"light": "moonlight"}, UnknownNameError),
+        (write_film, "cube", "a.npy", {"res": 4}, OutputError),
+        (write_light_program, "lights", "a.h", {"style": "hlsl"}, OptionError),
         (
-            export.write_light_program,
+            write_light_program,
             "lights",
             "a.h",
             {"style": "glsl", "form": "header"},
             OptionError,
         ),
-        (export.write_lut, "cube", "a.cube", {"light": "HP1", "res": 1}, OptionError),
-        (export.write_lut, "cube", "a.cube", {"light": "moonlight"}, UnknownNameError),
+        (write_lut, "cube", "a.cube", {"light": "HP1", "res": 1}, OptionError),
+        (write_lut, "cube", "a.cube", {"light": "moonlight"}, UnknownNameError),
         *(
-            (export.write_program, "data", "a.h", {key: "x"}, UnknownNameError)
+            (write_program, "data", "a.h", {key: "x"}, UnknownNameError)
             for key in ("style", "mode")
         ),
-        (export.write_program, "data", "a.h", {"form": "textures"}, OptionError),
+        (write_program, "data", "a.h", {"form": "textures"}, OptionError),
         (
-            export.write_program,
+            write_program,
             "data",
             "a.h",
             {"style": "glsl", "form": "header"},

@@ -14,7 +14,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 from tests.helpers import output_of, run_python
 from tests.parts import CXX, MITSUBA, need
-from uplift.colorimetry import delta_e_rgb
+from uplift.colorimetry.delta_e import delta_e_rgb
 from uplift.colorimetry.observer import (
     DEFAULT_OBSERVER,
     illuminant_spd,
@@ -23,7 +23,8 @@ from uplift.colorimetry.observer import (
 )
 from uplift.colorimetry.observer import sensor as make_sensor
 from uplift.extras.colour.srgb import decode, encode
-from uplift.extras.export import coeff, write_coeff
+from uplift.extras.export import coeff
+from uplift.extras.export.coeff import write_coeff
 from uplift.models.sigmoid import evaluate_unscaled
 
 RES = 5

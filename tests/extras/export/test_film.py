@@ -12,8 +12,7 @@ from uplift.colorimetry.observer import (
     illuminant_spd,
     matching_functions,
 )
-from uplift.extras.export import write_film
-from uplift.extras.export.film import CAT16, SHARE
+from uplift.extras.export.film import CAT16, SHARE, write_film
 
 WEIGHTS = (
     matching_functions(DEFAULT_OBSERVER)

@@ -13,8 +13,8 @@ from numpy.testing import assert_allclose
 from tests.helpers import output_of
 from tests.parts import CC, CXX, MITSUBA, NODE, SANITIZED, SANITIZERS, need
 from uplift.extras import texture
-from uplift.extras.export import write_program
 from uplift.extras.export.module import write_module
+from uplift.extras.export.program import write_program
 from uplift.extras.export.runtime import write_header
 
 PAGE = (Path(__file__).parents[3] / "docs" / "integrate.md").read_text("utf-8")

@@ -7,7 +7,8 @@ from numpy.testing import assert_allclose
 from tests.extras.export import run_program
 from uplift.extras.emission.discs import MIN_RADIUS
 from uplift.extras.emission.lookup import load_emission
-from uplift.extras.export import LANGUAGES, write_light_program
+from uplift.extras.export.light_program import write_light_program
+from uplift.extras.export.program import LANGUAGES
 
 WAVELENGTHS = [300.0, 455.0, 551.5, 790.0]
 WITHIN = 3e-4  # tolerance of single precision as a share of the largest power

@@ -5,10 +5,10 @@ import PyOpenColorIO
 import pytest
 from numpy.testing import assert_allclose
 
-from uplift.colorimetry import delta_e_rgb
+from uplift.colorimetry.delta_e import delta_e_rgb
 from uplift.colorimetry.observer import sensor
 from uplift.extras.colour.srgb import decode, encode
-from uplift.extras.export import write_lut
+from uplift.extras.export.lut import write_lut
 
 LIGHT = "HP1"
 NODES = np.random.default_rng(1).integers(0, 9, (60, 3)) / 8

@@ -6,10 +6,10 @@ import pytest
 from numpy.testing import assert_allclose
 
 import uplift
-from uplift.colorimetry import delta_e_spectra
+from uplift.colorimetry.delta_e import delta_e_spectra
 from uplift.colorimetry.observer import light
-from uplift.extras.export import material_error
-from uplift.lookup import Cube
+from uplift.extras.export.material_error import material_error
+from uplift.lookup.cube import Cube
 
 
 @pytest.fixture(scope="module")

@@ -14,7 +14,8 @@ from tests.fuzz.programs import c_reflectances
 from tests.helpers import raises, warns
 from tests.parts import CC, CLANG, SANITIZED, SANITIZERS, need
 from uplift.common.errors import OutputError
-from uplift.extras.export import LANGUAGES, rounding_error, write_program
+from uplift.extras.export.program import LANGUAGES, write_program
+from uplift.extras.export.rounding import rounding_error
 
 WAVELENGTHS = [300.0, 455.0, 551.5, 700.0]
 EVERY = np.arange(380.0, 781.0)

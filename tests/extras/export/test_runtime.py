@@ -22,7 +22,7 @@ from tests.helpers import quiet_build, raises
 from tests.parts import CC, CLANG, CXX, need
 from uplift.common.errors import OutputError
 from uplift.extras.export.runtime import compose_header, write_header
-from uplift.lookup import Cube
+from uplift.lookup.cube import Cube
 from uplift.lookup.interpolate import fading_share, is_inexact, node_errors
 
 AT = np.arange(350.0, 831.0, 24)

@@ -11,7 +11,7 @@ from numpy.testing import assert_allclose
 
 from tests.atlas.vendor_files import LAYOUTS, archive
 from tests.helpers import raises
-from uplift.atlas import read_atlas
+from uplift.atlas.sources import read_atlas
 from uplift.common.errors import AtlasError, UpliftWarning
 from uplift.extras.emission.lamps import read_lamps
 from uplift.extras.formats.quantities import QUANTITIES

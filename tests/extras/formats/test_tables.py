@@ -8,7 +8,7 @@ from numpy.testing import assert_allclose
 
 from tests.fuzz.tables import check
 from tests.helpers import raises, warns
-from uplift.atlas import read_atlas
+from uplift.atlas.sources import read_atlas
 from uplift.common.errors import AtlasError, UnknownNameError
 from uplift.extras.emission.lamps import read_lamps
 

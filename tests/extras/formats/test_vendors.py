@@ -12,7 +12,8 @@ from numpy.testing import assert_allclose
 
 from tests.atlas.vendor_files import VENDORS, sample
 from tests.helpers import raises, warns
-from uplift.atlas import known_formats, read_atlas
+from uplift.atlas.formats import known_formats
+from uplift.atlas.sources import read_atlas
 from uplift.common.errors import AtlasError, UnknownNameError
 from uplift.extras.formats import spreadsheet
 from uplift.extras.formats.envi import TYPES

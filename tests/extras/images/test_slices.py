@@ -10,9 +10,9 @@ import pytest
 
 from tests.cube.hand_made import hand_made
 from tests.helpers import raises
-from uplift.colorimetry import delta_e_2000, lab
+from uplift.colorimetry.delta_e import delta_e_2000, lab
 from uplift.common.errors import OutputError
-from uplift.cube import digest
+from uplift.cube.file import digest
 from uplift.extras.images.exr import write_slices
 
 

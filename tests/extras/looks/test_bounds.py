@@ -4,7 +4,8 @@ import numpy as np
 from numpy.testing import assert_allclose, assert_array_equal
 
 from tests.helpers import raises
-from uplift.colorimetry import lab, observer
+from uplift.colorimetry import observer
+from uplift.colorimetry.delta_e import lab
 from uplift.common.errors import ColourError
 from uplift.extras.looks.lab_errors import lab_errors
 from uplift.extras.looks.metamer_bounds import bounds

@@ -11,17 +11,17 @@ from scipy.optimize import linprog
 
 import uplift
 from tests.conftest import MACBETH
-from uplift.atlas import on_grid, read_atlas
-from uplift.colorimetry import (
-    delta_e_2000_weights,
-    in_unit_cube,
-    lab,
-    lab_jacobian,
-    observer,
-)
+from uplift.atlas.resampling import on_grid
+from uplift.atlas.sources import read_atlas
+from uplift.colorimetry import observer
+from uplift.colorimetry.delta_e import delta_e_2000_weights, lab, lab_jacobian
+from uplift.colorimetry.sensor import in_unit_cube
 from uplift.extras.looks.design import MET, LookGoal, design_reflectance, fit_designs
-from uplift.fit import Problem, fit_entries, fit_prior, join_entries
-from uplift.models import Moments, evaluate
+from uplift.fit.entries import fit_entries, join_entries
+from uplift.fit.prior import fit_prior
+from uplift.fit.problem import Problem
+from uplift.models.model import evaluate
+from uplift.models.moments import Moments
 
 TOLERANCE = 1e-6
 

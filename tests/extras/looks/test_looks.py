@@ -10,7 +10,7 @@ import uplift
 from tests.conftest import MACBETH
 from tests.helpers import quiet_build, raises, warns
 from uplift import Look, LookError, read_looks
-from uplift.colorimetry import delta_e_rgb
+from uplift.colorimetry.delta_e import delta_e_rgb
 from uplift.colorimetry.observer import display_sensors, light
 from uplift.extras.colour.query import query
 from uplift.extras.report.rebuild import rebuild

@@ -10,12 +10,13 @@ from scipy.optimize import linprog
 from scipy.spatial import ConvexHull
 
 from tests.helpers import raises
-from uplift.colorimetry import delta_e_2000, lab, observer
+from uplift.colorimetry import observer
+from uplift.colorimetry.delta_e import delta_e_2000, lab
 from uplift.common.errors import ColourError
 from uplift.extras.looks.extreme_spectra import extreme_spectra
 from uplift.extras.looks.mesh import mesh_volume, outline, sphere
 from uplift.extras.looks.mismatch import COUNTS, largest_difference, mismatch_volumes
-from uplift.extras.photographs import photograph
+from uplift.extras.photographs.photograph import photograph
 
 ROUNDING = 1e-9
 

@@ -7,12 +7,15 @@ from numpy.testing import assert_allclose
 import uplift
 from tests.conftest import ATLASES, ROOT
 from tests.helpers import raises
-from uplift.atlas import read_atlas, resample
-from uplift.colorimetry import in_unit_cube, observer
+from uplift.atlas.resampling import resample
+from uplift.atlas.sources import read_atlas
+from uplift.colorimetry import observer
+from uplift.colorimetry.sensor import in_unit_cube
 from uplift.common.errors import ColourError, OptionError
 from uplift.extras.looks.metamer_bounds import bounds
 from uplift.extras.looks.photograph_bounds import bounds_of_photographs
-from uplift.extras.photographs import photograph, prepare
+from uplift.extras.photographs.answers import prepare
+from uplift.extras.photographs.photograph import photograph
 
 ROUNDING = 1e-9
 

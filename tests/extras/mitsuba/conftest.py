@@ -15,7 +15,7 @@ def mi():
     need(MITSUBA)
     import mitsuba
 
-    from uplift.extras.mitsuba import register
+    from uplift.extras.mitsuba.plugin import register
 
     mitsuba.set_variant("scalar_spectral")
     register()

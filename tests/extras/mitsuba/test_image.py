@@ -17,7 +17,9 @@ from uplift.common.errors import TextureError
 from uplift.extras import texture as textures
 from uplift.extras.mitsuba.texels import read_texels
 from uplift.extras.mitsuba.texture import blend
-from uplift.models import Moments, Sigmoid, evaluate
+from uplift.models.model import evaluate
+from uplift.models.moments import Moments
+from uplift.models.sigmoid import Sigmoid
 
 pytestmark = pytest.mark.filterwarnings(
     "ignore:the texture calls Python:uplift.UpliftWarning"

@@ -13,8 +13,8 @@ from tests.helpers import raises
 from uplift.common.errors import OptionError
 from uplift.extras import texture
 from uplift.extras.emission.lookup import load_emission
-from uplift.extras.mitsuba import register
-from uplift.lookup import load
+from uplift.extras.mitsuba.plugin import register
+from uplift.lookup.cube import load
 
 pytestmark = pytest.mark.filterwarnings("ignore:.*calls Python for every ray")
 COLOUR = [0.5, 0.25, 0.1]

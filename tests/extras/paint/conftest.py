@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from tests.extras.paint.invented import FILMS, NAMES, invented, measured, plan
-from uplift.extras.paint import fit_paints
+from uplift.extras.paint.paint_fit import fit_paints
 from uplift.extras.paint.pigments import Pigment
 
 

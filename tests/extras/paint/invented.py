@@ -4,9 +4,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from uplift.colorimetry import delta_e_spectra, observer
-from uplift.extras.paint import Paints, PaintSamples, Surface
-from uplift.extras.paint.paint_samples import MeasuredSpectra
+from uplift.colorimetry import observer
+from uplift.colorimetry.delta_e import delta_e_spectra
+from uplift.extras.paint.optics import Surface
+from uplift.extras.paint.paint_samples import MeasuredSpectra, PaintSamples
+from uplift.extras.paint.paints import Paints
 from uplift.extras.paint.pigments import Pigment
 
 WAVELENGTHS = np.arange(400.0, 701, 20)

@@ -10,18 +10,20 @@ from numpy.testing import assert_allclose, assert_array_equal
 from tests.extras.texture.conftest import channels, planes, read_channels, write_exr
 from tests.helpers import raises, warns
 from uplift.common.errors import ColourError, OptionError
-from uplift.extras.paint import (
+from uplift.extras.paint.coats import (
+    DARKEST,
     Ingredients,
     Medium,
-    Surface,
+    dye_absorption,
+    dye_transmittance,
     make_coat,
     mix,
-    overpainter,
+    ramp,
 )
-from uplift.extras.paint.coats import DARKEST, dye_absorption, dye_transmittance, ramp
-from uplift.extras.paint.optics import NO_SURFACE, Layer, plate
+from uplift.extras.paint.optics import NO_SURFACE, Layer, Surface, plate
+from uplift.extras.paint.overpaint import overpainter
 from uplift.extras.paint.pigments import CONSTANT, SQUARE_ROOT, Pigment, from_opaque
-from uplift.extras.texture import convert
+from uplift.extras.texture.conversion import convert
 
 WHITE = np.ones(5)
 PLAIN = Medium(scattering=SQUARE_ROOT)

@@ -13,7 +13,7 @@ from uplift.common.errors import OptionError, OutputError, UnknownNameError
 from uplift.extras.colour.srgb import decode, encode
 from uplift.extras.paint.mixer_programs import write_mixer
 from uplift.extras.paint.rgb_mixer import make_mixer
-from uplift.lookup import Cube
+from uplift.lookup.cube import Cube
 
 SUFFIXES = {"mixer-c": ".h", "mixer-glsl": ".glsl", "mixer-js": ".mjs"}
 DIM = 9

@@ -8,8 +8,8 @@ from numpy.testing import assert_allclose
 
 from tests.helpers import raises
 from uplift.common.errors import OptionError
-from uplift.extras.paint import Surface, optics
-from uplift.extras.paint.optics import Layer, add_lights, average_areas
+from uplift.extras.paint import optics
+from uplift.extras.paint.optics import Layer, Surface, add_lights, average_areas
 
 INDICES = (1.01, 1.2, 1.5, 1.66, 2.4)
 

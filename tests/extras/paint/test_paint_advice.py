@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from tests.extras.paint.invented import invented, measured
-from uplift.extras.paint import advise_samples, fit_paints
+from uplift.extras.paint.paint_advice import advise_samples
+from uplift.extras.paint.paint_fit import fit_paints
 
 
 def test_samples_are_new_and_each_lowers_the_error(opaque_fit):

@@ -20,8 +20,14 @@ from tests.helpers import raises, warns
 from uplift.colorimetry import observer
 from uplift.common.errors import OptionError
 from uplift.extras.colour.srgb import decode, encode
-from uplift.extras.paint import PaintSamples, Surface, fit_paints, paint_fit
-from uplift.extras.paint.paint_samples import MeasuredColours, MeasuredSpectra
+from uplift.extras.paint import paint_fit
+from uplift.extras.paint.optics import Surface
+from uplift.extras.paint.paint_fit import fit_paints
+from uplift.extras.paint.paint_samples import (
+    MeasuredColours,
+    MeasuredSpectra,
+    PaintSamples,
+)
 
 
 def log_errors(fitted, paints):

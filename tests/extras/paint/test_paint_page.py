@@ -12,11 +12,12 @@ from tests.browsing import WIDTHS, check_page, open_page, overflow, shared_tab
 from tests.extras.paint.invented import invented
 from tests.helpers import output_of, raises
 from tests.parts import NODE, need
-from uplift.colorimetry import delta_e_rgb, observer
+from uplift.colorimetry import observer
+from uplift.colorimetry.delta_e import delta_e_rgb
 from uplift.common.errors import OutputError
 from uplift.extras.colour.srgb import decode, hex_codes
-from uplift.extras.paint import PaintTarget, match
 from uplift.extras.paint.paint_page import page, write_page
+from uplift.extras.paint.recipes import PaintTarget, match
 
 SENSOR = observer.sensor(wavelengths=(400, 700, 10))
 DIFFERENCES = """
@@ -191,6 +192,6 @@ def test_differences_in_javascript_are_ciede2000(repository, tmp_path):
     found = json.loads(answer)
     assert_allclose(found["errors"], pairs[:, 6], atol=5.1e-5)
     assert_allclose(found["back"], pairs[:, 6], atol=5.1e-5)
-    from uplift.colorimetry import lab
+    from uplift.colorimetry.delta_e import lab
 
     assert_allclose(found["labs"], lab(colours, white), atol=1e-9)

@@ -10,7 +10,8 @@ from numpy.testing import assert_allclose
 from tests.extras.paint import run_paints
 from tests.extras.paint.invented import invented
 from tests.helpers import raises
-from uplift.colorimetry import delta_e_rgb, observer
+from uplift.colorimetry import observer
+from uplift.colorimetry.delta_e import delta_e_rgb
 from uplift.common.errors import OptionError, OutputError, UnknownNameError
 from uplift.extras.colour.srgb import decode, encode
 from uplift.extras.paint.paint_exports import (

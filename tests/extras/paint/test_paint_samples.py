@@ -7,8 +7,12 @@ from numpy.testing import assert_allclose, assert_array_equal
 from tests.helpers import raises, warns
 from uplift.common.errors import AtlasError
 from uplift.extras.colour.srgb import decode
-from uplift.extras.paint import read_paint_samples, read_paints
-from uplift.extras.paint.paint_samples import MeasuredColours, MeasuredSpectra
+from uplift.extras.paint.paint_samples import (
+    MeasuredColours,
+    MeasuredSpectra,
+    read_paint_samples,
+)
+from uplift.extras.paint.paints_file import read_paints
 from uplift.extras.paint.recipe_table import read_recipes
 from uplift.samples import sample_path
 

@@ -7,10 +7,10 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 from tests.extras.paint.invented import OIL, WAVELENGTHS, invented
 from tests.helpers import raises
-from uplift.colorimetry import lab
+from uplift.colorimetry.delta_e import lab
 from uplift.common.errors import OptionError, UnknownNameError
-from uplift.extras.paint import Paints, Surface, strengths
-from uplift.extras.paint.optics import beneath_surface, through_surface
+from uplift.extras.paint.optics import Surface, beneath_surface, through_surface
+from uplift.extras.paint.paints import Paints, strengths
 from uplift.extras.paint.pigments import Pigment
 
 PARTS = np.array([3.0, 1.0, 0.5, 2.0])

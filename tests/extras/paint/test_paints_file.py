@@ -10,8 +10,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 from tests.extras.paint.invented import NAMES, invented
 from tests.helpers import raises
 from uplift.common.errors import OutputError, PaintError
-from uplift.extras.paint import read_paints, write_paints
-from uplift.extras.paint.paints_file import to_toml
+from uplift.extras.paint.paints_file import read_paints, to_toml, write_paints
 from uplift.extras.paint.pigments import Pigment
 
 GRID = [400.0 + 20 * step for step in range(16)]

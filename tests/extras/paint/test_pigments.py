@@ -11,7 +11,7 @@ from scipy.integrate import solve_bvp
 
 from tests.helpers import raises
 from uplift.common.errors import AtlasError, ColourError
-from uplift.extras.paint import dispersive, duntley, pigments
+from uplift.extras.paint import duntley, pigments
 from uplift.extras.paint.duntley import (
     Flux,
     beam_to_diffuse,
@@ -23,6 +23,7 @@ from uplift.extras.paint.pigments import (
     SQUARE_ROOT,
     Pigment,
     PowerOfReflectance,
+    dispersive,
     from_black_and_white,
     from_opaque,
 )

@@ -8,11 +8,12 @@ from numpy.testing import assert_allclose
 
 from tests.extras.paint.invented import invented
 from tests.helpers import raises
-from uplift.colorimetry import delta_e_2000, delta_e_spectra, lab, observer
+from uplift.colorimetry import observer
+from uplift.colorimetry.delta_e import delta_e_2000, delta_e_spectra, lab
 from uplift.common.errors import OptionError
-from uplift.extras.paint import Paints, PaintTarget, match
+from uplift.extras.paint.paints import Paints
 from uplift.extras.paint.pigments import Pigment
-from uplift.extras.paint.recipes import NEARLY, descend, shares_of
+from uplift.extras.paint.recipes import NEARLY, PaintTarget, descend, match, shares_of
 
 GRID = (400, 700, 20)
 

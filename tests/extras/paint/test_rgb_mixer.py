@@ -9,10 +9,9 @@ from scipy.interpolate import RegularGridInterpolator
 
 import uplift
 from tests.helpers import near_black, raises, with_absent_points
-from uplift.colorimetry import delta_e_rgb
+from uplift.colorimetry.delta_e import delta_e_rgb
 from uplift.common.errors import ColourError, OptionError
 from uplift.extras.colour.srgb import decode, encode
-from uplift.extras.paint import dispersive
 from uplift.extras.paint.bands import (
     BANDS,
     _even_edges,
@@ -20,9 +19,9 @@ from uplift.extras.paint.bands import (
     choose_bands,
     random_mixtures,
 )
-from uplift.extras.paint.pigments import from_opaque
+from uplift.extras.paint.pigments import dispersive, from_opaque
 from uplift.extras.paint.rgb_mixer import SIZE, interpolate, make_mixer
-from uplift.lookup import Cube
+from uplift.lookup.cube import Cube
 
 BLUE, YELLOW = decode(np.array([[0, 33, 133], [252, 210, 0]]) / 255)
 

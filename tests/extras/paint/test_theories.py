@@ -10,7 +10,7 @@ from numpy.testing import assert_allclose
 
 import uplift
 from benchmarks.mixtures import acrylics, published
-from uplift.colorimetry import delta_e_rgb
+from uplift.colorimetry.delta_e import delta_e_rgb
 from uplift.extras.paint.theories import (
     hsl_to_rgb,
     mix_phosphors,

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from uplift.extras.palette import illuminant, standard_model
-from uplift.extras.palette.factor import FactorModel
+from uplift.extras.palette.colours import illuminant
+from uplift.extras.palette.factor import FactorModel, standard_model
 from uplift.extras.palette.palette import ColourGoal, Palette, SpectrumSpec
 
 

@@ -15,18 +15,13 @@ import uplift
 from tests.helpers import raises, warns
 from uplift.common.errors import OutputError, PaletteError
 from uplift.extras.colour.srgb import hex_codes
-from uplift.extras.palette import (
-    design,
-    illuminant,
-    matrix,
-    read_palette,
-    unmet_goals,
-    write_designed,
-)
-from uplift.extras.palette.colours import screen_matrix
+from uplift.extras.palette.colours import illuminant, screen_matrix
+from uplift.extras.palette.design import design, matrix, write_designed
 from uplift.extras.palette.equations import SPACING, equations, solve, unknowns
 from uplift.extras.palette.palette import ColourGoal, Palette, SpectrumSpec
 from uplift.extras.palette.plots import plot_matrix
+from uplift.extras.palette.spec import read_palette
+from uplift.extras.palette.unmet import unmet_goals
 
 BLACK = np.zeros(3)
 

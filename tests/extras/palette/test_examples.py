@@ -6,8 +6,10 @@ import numpy as np
 import pytest
 
 from tests.conftest import ROOT
-from uplift.colorimetry import delta_e_rgb
-from uplift.extras.palette import design, matrix, read_palette, unmet_goals
+from uplift.colorimetry.delta_e import delta_e_rgb
+from uplift.extras.palette.design import design, matrix
+from uplift.extras.palette.spec import read_palette
+from uplift.extras.palette.unmet import unmet_goals
 from uplift.samples import sample_path
 
 EXAMPLES = ("metamers", "vanish", "light", "constant")

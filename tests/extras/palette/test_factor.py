@@ -7,10 +7,10 @@ import pytest
 from numpy.testing import assert_allclose
 
 from tests.conftest import ATLASES
-from uplift.atlas import on_grid, read_atlas
+from uplift.atlas.resampling import on_grid
+from uplift.atlas.sources import read_atlas
 from uplift.colorimetry import delta_e
-from uplift.extras.palette import illuminant
-from uplift.extras.palette.colours import exposure, screen_matrix
+from uplift.extras.palette.colours import exposure, illuminant, screen_matrix
 from uplift.extras.palette.factor import linear_product
 
 

@@ -12,7 +12,8 @@ import pytest
 
 from tests.browsing import check_page, shared_tab
 from uplift.extras.colour.srgb import encode
-from uplift.extras.palette import design, illuminant
+from uplift.extras.palette.colours import illuminant
+from uplift.extras.palette.design import design
 from uplift.extras.palette.palette import Palette, SpectrumSpec
 from uplift.extras.palette.picture import cutaway
 from uplift.extras.palette.relight_page import Relighting, page, relighting

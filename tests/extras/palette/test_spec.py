@@ -9,11 +9,12 @@ from numpy.testing import assert_allclose, assert_array_equal
 import uplift
 from tests.conftest import MACBETH, ROOT
 from tests.helpers import raises
-from uplift.atlas import on_grid, read_atlas
+from uplift.atlas.resampling import on_grid
+from uplift.atlas.sources import read_atlas
 from uplift.common.errors import PaletteError
-from uplift.extras.palette import illuminant, read_palette
-from uplift.extras.palette.colours import planck, screen_matrix
+from uplift.extras.palette.colours import illuminant, planck, screen_matrix
 from uplift.extras.palette.palette import MinDifference
+from uplift.extras.palette.spec import read_palette
 
 COMPLETE = """
 smoothness = 0.002

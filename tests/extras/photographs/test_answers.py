@@ -9,12 +9,15 @@ from numpy.testing import assert_allclose, assert_array_equal
 import uplift
 from tests.conftest import ATLASES
 from tests.helpers import quiet_build, raises, without_evidence
-from uplift.atlas import resample
-from uplift.colorimetry import delta_e_spectra, in_unit_cube, observer
+from uplift.atlas.resampling import resample
+from uplift.colorimetry import observer
+from uplift.colorimetry.delta_e import delta_e_spectra
+from uplift.colorimetry.sensor import in_unit_cube
 from uplift.common.errors import ColourError, OptionError, UnknownNameError
-from uplift.extras.photographs import light_errors, photograph, prepare
-from uplift.extras.photographs.answers import LEAST_NOISE, Photographs
+from uplift.extras.photographs.answers import LEAST_NOISE, Photographs, prepare
+from uplift.extras.photographs.errors import light_errors
 from uplift.extras.photographs.metamers import RANK, learn_metamers
+from uplift.extras.photographs.photograph import photograph
 from uplift.models.brightness import brightness
 
 RGB = np.random.default_rng(5).random((200, 3)) ** 2

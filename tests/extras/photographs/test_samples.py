@@ -9,11 +9,12 @@ from numpy.testing import assert_allclose, assert_array_equal
 import uplift
 from tests.conftest import ATLASES
 from tests.helpers import quiet_build, raises, without_evidence
-from uplift.atlas import resample
-from uplift.colorimetry import delta_e_spectra, in_unit_cube, observer
+from uplift.atlas.resampling import resample
+from uplift.colorimetry import observer
+from uplift.colorimetry.delta_e import delta_e_spectra
+from uplift.colorimetry.sensor import in_unit_cube
 from uplift.common.errors import ColourError, OptionError
-from uplift.extras.photographs import prepare_samples
-from uplift.extras.photographs.samples import TAIL
+from uplift.extras.photographs.samples import TAIL, prepare_samples
 from uplift.lookup.errors_under_lights import evidence
 from uplift.models.brightness import brightness
 

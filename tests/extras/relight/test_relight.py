@@ -9,9 +9,11 @@ from numpy.testing import assert_allclose
 
 from tests.extras.texture.conftest import write_image
 from tests.helpers import raises
-from uplift.atlas import on_grid, read_atlas
-from uplift.colorimetry import delta_e_rgb, in_unit_cube
+from uplift.atlas.resampling import on_grid
+from uplift.atlas.sources import read_atlas
+from uplift.colorimetry.delta_e import delta_e_rgb
 from uplift.colorimetry.observer import light, sensor
+from uplift.colorimetry.sensor import in_unit_cube
 from uplift.common.errors import OptionError
 from uplift.extras.relight.relight import RGB_PRODUCT, relight, write_relit_sheet
 from uplift.extras.texture.picture import read_picture

@@ -8,10 +8,11 @@ import pytest
 import uplift
 from tests.cube.hand_made import table
 from tests.helpers import with_points
-from uplift.atlas import Atlas, Entry, read_atlas
+from uplift.atlas.atlas import Atlas, Entry
+from uplift.atlas.sources import read_atlas
 from uplift.extras.report.assessment import assess
-from uplift.lattice import Status
-from uplift.lookup import Cube
+from uplift.lattice.point_table import Status
+from uplift.lookup.cube import Cube
 
 HOSTILE = "<script>alert('&')</script>"
 

@@ -27,7 +27,7 @@ from uplift.extras.report.conformance_kit import (
     kit_names,
     write_kit,
 )
-from uplift.lookup import Cube
+from uplift.lookup.cube import Cube
 
 A = KIT / "reference-A.exr"
 

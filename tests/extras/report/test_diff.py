@@ -9,14 +9,14 @@ from numpy.testing import assert_allclose
 
 import uplift
 from tests.helpers import raises, with_points
-from uplift.colorimetry import delta_e_spectra
+from uplift.colorimetry.delta_e import delta_e_spectra
 from uplift.colorimetry.observer import light
 from uplift.common import machine
 from uplift.common.errors import OptionError
 from uplift.extras.report.diff import diff_cubes, to_json
 from uplift.extras.report.diff_page import render_diff
-from uplift.lattice import Status
-from uplift.lookup import Cube
+from uplift.lattice.point_table import Status
+from uplift.lookup.cube import Cube
 
 LIGHTS = ("D65", "A")
 

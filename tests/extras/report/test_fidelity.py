@@ -10,7 +10,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 import uplift
 from tests.helpers import with_points, without_evidence
-from uplift.atlas import on_grid
+from uplift.atlas.resampling import on_grid
 from uplift.colorimetry.observer import display_sensors, light
 from uplift.extras.report.assessment import assess
 from uplift.extras.report.crowding import find_crowding
@@ -29,7 +29,7 @@ from uplift.extras.report.measures import (
     compute_smoothness,
 )
 from uplift.lookup.interpolate import lattice_spectra
-from uplift.models import reflectance
+from uplift.models.model import reflectance
 
 OUTSIDE = "cyan"
 """The entry outside sRGB, which a lattice does not answer."""

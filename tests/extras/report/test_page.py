@@ -9,7 +9,7 @@ import pytest
 from tests.browsing import check_page
 from tests.extras.report.conftest import HOSTILE
 from tests.pages import Page
-from uplift.atlas import read_atlas
+from uplift.atlas.sources import read_atlas
 from uplift.extras.report import page
 from uplift.extras.report.assessment import assess
 from uplift.extras.report.charts import linear_edges, log_edges, make_histogram

@@ -8,9 +8,9 @@ import pytest
 import uplift
 from tests.helpers import quiet_build, raises, warns
 from uplift.common.errors import CubeFileError
-from uplift.cube import digest
+from uplift.cube.file import digest
 from uplift.extras.report.rebuild import rebuild, recorded_atlas
-from uplift.lookup import Cube
+from uplift.lookup.cube import Cube
 
 
 @pytest.fixture

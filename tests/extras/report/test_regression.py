@@ -10,7 +10,7 @@ import pytest
 
 import uplift
 from tests.helpers import raises, with_points
-from uplift.colorimetry import delta_e_spectra
+from uplift.colorimetry.delta_e import delta_e_spectra
 from uplift.colorimetry.observer import light
 from uplift.common.errors import CubeFileError
 from uplift.extras.colour.light_sets import REGRESSION_LIGHTS
@@ -20,7 +20,8 @@ from uplift.extras.report.regression import (
     RebuildDifference,
     compare_rebuilt,
 )
-from uplift.lattice import Lattice, Status
+from uplift.lattice.lattice import Lattice
+from uplift.lattice.point_table import Status
 
 PATH = Path("cube.uplift")
 

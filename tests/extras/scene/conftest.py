@@ -4,7 +4,7 @@ import pytest
 
 from tests.conftest import MACBETH
 from uplift import read_atlas
-from uplift.atlas import on_grid
+from uplift.atlas.resampling import on_grid
 from uplift.extras.scene.wavelengths import grid, make_setup
 
 

@@ -15,8 +15,7 @@ from uplift.colorimetry.observer import light
 from uplift.common.errors import OptionError, TextureError
 from uplift.extras.scene.advice import advise, colour_areas, uncertainty
 from uplift.extras.texture.scene_colours import Images, PixelSample, sample_colours
-from uplift.fit import posterior
-from uplift.fit.kriging import Kernel
+from uplift.fit.kriging import Kernel, posterior
 
 LIGHTS = ("A", "FL11")
 

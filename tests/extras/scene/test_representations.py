@@ -11,8 +11,9 @@ from numpy.testing import assert_allclose
 
 from tests.conftest import MACBETH
 from tests.helpers import raises
-from uplift.atlas import read_atlas
-from uplift.colorimetry import delta_e_2000, observer
+from uplift.atlas.sources import read_atlas
+from uplift.colorimetry import observer
+from uplift.colorimetry.delta_e import delta_e_2000
 from uplift.common.errors import OptionError
 from uplift.extras.scene.representations import (
     FACTORIES,

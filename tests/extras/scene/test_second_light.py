@@ -9,7 +9,9 @@ from tests.helpers import raises, without_evidence
 from uplift.colorimetry.illuminants import Lamp
 from uplift.colorimetry.observer import light
 from uplift.common.errors import OptionError, UnknownNameError
-from uplift.extras.photographs import light_errors, photograph, prepare
+from uplift.extras.photographs.answers import prepare
+from uplift.extras.photographs.errors import light_errors
+from uplift.extras.photographs.photograph import photograph
 from uplift.extras.scene.second_light import (
     default_candidates,
     error_without,

@@ -8,7 +8,7 @@ import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
 from tests.helpers import raises
-from uplift.colorimetry import delta_e_2000
+from uplift.colorimetry.delta_e import delta_e_2000
 from uplift.common.errors import OptionError, UnknownNameError, UpliftError
 from uplift.extras.scene.wavelengths import (
     METHODS,

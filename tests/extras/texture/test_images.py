@@ -25,14 +25,14 @@ from tests.extras.texture.conftest import (
 from tests.helpers import raises
 from uplift.colorimetry.gamut import map_to_gamut
 from uplift.common.errors import ColourError, TextureError
-from uplift.cube import EntrySpectra
+from uplift.cube.data import EntrySpectra
 from uplift.extras import texture
 from uplift.extras.colour.spaces import find_space
 from uplift.extras.mitsuba.texels import read_colours
 from uplift.extras.texture.image import open_image
 from uplift.extras.texture.picture import read_picture
 from uplift.extras.texture.scene_colours import Images
-from uplift.models import evaluate
+from uplift.models.model import evaluate
 
 
 @pytest.mark.parametrize(

@@ -11,7 +11,7 @@ import uplift
 from tests.helpers import raises
 from uplift.common.errors import OptionError, TextureError
 from uplift.extras import texture
-from uplift.models import evaluate
+from uplift.models.model import evaluate
 
 from .conftest import WAVELENGTHS, read_channels, write_exr
 

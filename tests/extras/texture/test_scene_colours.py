@@ -11,12 +11,14 @@ from tests.conftest import ATLASES, MACBETH
 from tests.extras.texture.conftest import PHOTO, WAVELENGTHS, planes, write_exr
 from tests.helpers import near_black, quiet_build, raises, with_absent_points
 from uplift.common.errors import ColourError
-from uplift.cube import digest
+from uplift.cube.file import digest
 from uplift.extras.report.rebuild import rebuild
 from uplift.extras.report.regression import compare_rebuilt
 from uplift.extras.texture.scene_colours import Images
-from uplift.lattice import Status
-from uplift.lookup import MODES, Cube, bulk
+from uplift.lattice.point_table import Status
+from uplift.lookup import bulk
+from uplift.lookup.cube import Cube
+from uplift.lookup.interpolate import MODES
 
 
 @pytest.fixture(scope="module")

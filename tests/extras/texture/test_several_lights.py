@@ -10,13 +10,16 @@ from numpy.testing import assert_allclose, assert_array_equal
 import uplift
 from tests.conftest import ATLASES
 from tests.helpers import raises
-from uplift.atlas import resample
-from uplift.colorimetry import delta_e_spectra, in_unit_cube, observer
+from uplift.atlas.resampling import resample
+from uplift.colorimetry import observer
+from uplift.colorimetry.delta_e import delta_e_spectra
+from uplift.colorimetry.sensor import in_unit_cube
 from uplift.common.errors import OptionError, TextureError
 from uplift.extras import texture
-from uplift.extras.photographs import Noise, photograph, prepare
+from uplift.extras.photographs.answers import prepare
 from uplift.extras.photographs.chart import homography
 from uplift.extras.photographs.fit import estimate_noise, shift
+from uplift.extras.photographs.photograph import Noise, photograph
 from uplift.extras.texture.sequence import Job, TextureSettings, is_complete, run
 from uplift.lookup.node_table import prepare_products
 

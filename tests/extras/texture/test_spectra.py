@@ -23,9 +23,9 @@ from tests.extras.texture.conftest import (
 )
 from tests.helpers import raises
 from uplift import models
-from uplift.colorimetry import delta_e_rgb
+from uplift.colorimetry.delta_e import delta_e_rgb
 from uplift.common.errors import UpliftError
-from uplift.cube import digest
+from uplift.cube.file import digest
 from uplift.extras import texture
 from uplift.extras.emission.lookup import EmissionTable, load_emission
 

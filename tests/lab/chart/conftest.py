@@ -2,7 +2,7 @@
 
 import pytest
 
-from uplift.atlas import read_atlas
+from uplift.atlas.sources import read_atlas
 from uplift.lab.chart.results import FACTS, REQUIRED, TEXTS, Chart, MethodResult, State
 from uplift.lab.chart.task import Effort, make_task
 from uplift.lab.method import Method, PreparedMethod

@@ -4,7 +4,8 @@ import numpy as np
 from numpy.testing import assert_array_equal
 
 from tests.helpers import raises
-from uplift.atlas import Atlas, Entry, merge, read_atlas
+from uplift.atlas.atlas import Atlas, Entry, merge
+from uplift.atlas.sources import read_atlas
 from uplift.common.errors import AtlasError
 from uplift.lab.chart.task import make_task
 from uplift.lab.look_alikes import families_like

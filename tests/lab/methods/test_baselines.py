@@ -7,7 +7,8 @@ import pytest
 from numpy.testing import assert_allclose
 from scipy.optimize import minimize
 
-from uplift.atlas import Atlas, read_atlas
+from uplift.atlas.atlas import Atlas
+from uplift.atlas.sources import read_atlas
 from uplift.colorimetry import observer
 from uplift.lab.methods.burns2019 import reconstruct
 from uplift.lab.methods.colour_maps import (

@@ -5,7 +5,7 @@ import itertools
 import numpy as np
 from numpy.testing import assert_allclose
 
-from uplift.atlas import read_atlas
+from uplift.atlas.sources import read_atlas
 from uplift.colorimetry import observer
 from uplift.colorimetry.illuminants import SCENE_LIGHTS
 from uplift.lab.methods import local_linear

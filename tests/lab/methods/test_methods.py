@@ -8,7 +8,7 @@ from colour.recovery import RGB_to_sd_Mallett2019, RGB_to_sd_Smits1999
 from numpy.testing import assert_allclose
 
 from tests.parts import LLVM, need
-from uplift.atlas import read_atlas
+from uplift.atlas.sources import read_atlas
 from uplift.colorimetry import observer
 from uplift.extras.images.processes import call_in_child
 from uplift.lab.chart.selection import METHODS, select_methods

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from uplift.atlas import Atlas, Entry
+from uplift.atlas.atlas import Atlas, Entry
 from uplift.colorimetry import observer
 from uplift.lab.study.held_out import HALF, NO_ATLAS, SIGMOID, holdout
 

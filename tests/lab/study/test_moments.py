@@ -11,7 +11,9 @@ from benchmarks import read_reference
 from benchmarks.materials import read_atlases
 from tests.helpers import raises
 from tools.render_docs import pick, where
-from uplift.atlas import Atlas, on_grid, read_atlas
+from uplift.atlas.atlas import Atlas
+from uplift.atlas.resampling import on_grid
+from uplift.atlas.sources import read_atlas
 from uplift.common.errors import AtlasError, OptionError
 from uplift.extras.scene.representations.samples import wavelengths
 from uplift.lab.study.moments import (

@@ -5,8 +5,9 @@ import pytest
 from numpy.testing import assert_array_equal
 
 import uplift
-from uplift.atlas import read_atlas
-from uplift.colorimetry import delta_e_spectra, observer
+from uplift.atlas.sources import read_atlas
+from uplift.colorimetry import observer
+from uplift.colorimetry.delta_e import delta_e_spectra
 from uplift.lab.study.sensitivity import (
     CONTINUOUS_MODES,
     Change,

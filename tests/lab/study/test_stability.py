@@ -19,7 +19,7 @@ from uplift.lab.study.stability import (
     study_stability,
     synthetic_atlases,
 )
-from uplift.lattice import Lattice, axis_nodes
+from uplift.lattice.lattice import Lattice, axis_nodes
 
 
 def test_build_is_evaluated_over_its_realisable_nodes():

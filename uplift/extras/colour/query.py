@@ -9,19 +9,17 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from uplift.colorimetry import Light, Solid, as_rgb, delta_e_rgb, in_unit_cube
+from uplift.colorimetry.delta_e import delta_e_rgb
+from uplift.colorimetry.object_colours import Solid
+from uplift.colorimetry.sensor import Light, as_rgb, in_unit_cube
 from uplift.common.arrays import Array, Indices, Mask, blocks
 from uplift.common.errors import ColourError, unknown_name
-from uplift.cube import CubeData
-from uplift.lattice import CORNERS, Status
-from uplift.lookup import (
-    BLOCK,
-    MODES,
-    Cube,
-    as_colours,
-    as_wavelengths,
-    expected_errors,
-)
+from uplift.cube.data import CubeData
+from uplift.lattice.lattice import CORNERS
+from uplift.lattice.point_table import Status
+from uplift.lookup.blocks import BLOCK, as_colours, as_wavelengths
+from uplift.lookup.cube import Cube, expected_errors
+from uplift.lookup.interpolate import MODES
 
 CODE_TOLERANCE = 0.5
 """A colour is that of an entry if their 8-bit codes differ by at most this."""

@@ -11,8 +11,9 @@ from typing import Any
 
 import numpy as np
 
-from uplift.colorimetry import Sensor, tables
+from uplift.colorimetry import tables
 from uplift.colorimetry.gamut import Gamut, Primaries, conversion
+from uplift.colorimetry.sensor import Sensor
 from uplift.colorimetry.tables import RgbSpace
 from uplift.common.arrays import Array
 from uplift.common.errors import OptionError, UnknownNameError, unknown_name

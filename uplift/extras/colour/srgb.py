@@ -12,8 +12,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from uplift.colorimetry import Sensor
 from uplift.colorimetry.gamut import SRGB, Gamut, conversion, map_to_gamut
+from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Array
 from uplift.common.errors import ColourError
 from uplift.common.text import format_value

@@ -8,7 +8,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from uplift.atlas import Atlas, Source, on_grid, read_atlas
+from uplift.atlas.atlas import Atlas, Source
+from uplift.atlas.resampling import on_grid
+from uplift.atlas.sources import read_atlas
 from uplift.colorimetry import observer as observers
 from uplift.common.arrays import Array, StrPath
 from uplift.common.errors import OptionError, UpliftWarning, warn

@@ -11,7 +11,7 @@ from uplift.common.arrays import Array, Mask, Values
 from uplift.common.errors import ColourError
 from uplift.extras.emission.file import EmissionData
 from uplift.extras.emission.lattice import DENOMINATOR, LOCUS_TOLERANCE, Cells
-from uplift.lattice import weighted_sum
+from uplift.lattice.lattice import weighted_sum
 
 FAR = 10.0
 """Bound of u′v′ of colours that no light has; those of lights are within 0 and 1."""

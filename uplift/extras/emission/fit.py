@@ -19,7 +19,8 @@ from uplift.extras.emission.lattice import (
     unit_xyz,
 )
 from uplift.fit.solver import solve
-from uplift.models import Model, forward_map
+from uplift.models.minimum_norm import forward_map
+from uplift.models.model import Model
 
 TOLERANCE = 1e-9
 """Distance in XYZ, of unit X + 15 Y + 3 Z, at which a node is solved."""

@@ -5,18 +5,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from uplift.atlas import (
-    VISIBLE,
-    Atlas,
-    Document,
-    Entry,
-    SourceLocation,
-    find_atlas_file,
-    merge,
-    read_any,
-    read_named,
-    skipped_warning,
-)
+from uplift.atlas.atlas import VISIBLE, Atlas, Entry, merge, skipped_warning
+from uplift.atlas.document import Document, SourceLocation
+from uplift.atlas.formats import read_any
+from uplift.atlas.sources import find_atlas_file, read_named
 from uplift.colorimetry import tables
 from uplift.colorimetry.illuminants import Illuminant, Lamp
 from uplift.colorimetry.observer import (

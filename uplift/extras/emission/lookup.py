@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
 
-from uplift.colorimetry import as_rgb
+from uplift.colorimetry.sensor import as_rgb
 from uplift.common.arrays import Array, Mask, Values, as_array
 from uplift.common.errors import ColourError, OptionError
 from uplift.extras.emission.chromaticities import (
@@ -21,15 +21,15 @@ from uplift.extras.emission.chromaticities import (
     power_of_xyz,
 )
 from uplift.extras.emission.file import EmissionData, read_emission, write_emission
-from uplift.lattice import weighted_sum
-from uplift.lookup import (
+from uplift.lattice.lattice import weighted_sum
+from uplift.lookup.blocks import (
     Function,
     as_float_type,
     as_thread_count,
     as_wavelengths,
     blockwise,
-    find_file,
 )
+from uplift.lookup.cube import find_file
 from uplift.models.arithmetic import blocked_matmul
 
 EMISSION = Path(__file__).with_name("emission.uplift")

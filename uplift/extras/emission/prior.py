@@ -11,7 +11,7 @@ from itertools import product
 
 import numpy as np
 
-from uplift.colorimetry import delta_e_2000, lab
+from uplift.colorimetry.delta_e import delta_e_2000, lab
 from uplift.common.arrays import Array
 from uplift.extras.emission.fit import nearest_lights
 from uplift.extras.emission.lattice import chromaticity, unit_power

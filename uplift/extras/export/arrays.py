@@ -8,8 +8,9 @@ import numpy as np
 from uplift.common.arrays import StrPath
 from uplift.common.files import atomic_write
 from uplift.common.text import pluralise
-from uplift.cube import CubeData, contents
-from uplift.lookup import Cube
+from uplift.cube.data import CubeData
+from uplift.cube.file import contents
+from uplift.lookup.cube import Cube
 
 
 def export_npz(cube: Cube, path: Path, style: str, *, force: bool) -> str:

@@ -28,19 +28,21 @@ from string import Template
 
 import numpy as np
 
-from uplift.colorimetry import Sensor, delta_e_rgb
+from uplift.colorimetry.delta_e import delta_e_rgb
 from uplift.colorimetry.observer import on_range
+from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Array, Floats, StrPath, Values, blocks
 from uplift.common.errors import OptionError
 from uplift.common.files import atomic_write
-from uplift.cube import CubeData
+from uplift.cube.data import CubeData
 from uplift.extras.colour.srgb import decode
 from uplift.extras.export.program import read_source
 from uplift.extras.export.table_error import TableError, find_errors
-from uplift.lookup import Cube, around
-from uplift.models import Sigmoid, solve_damped
+from uplift.lookup.cube import Cube
+from uplift.lookup.interpolate import around
 from uplift.models.arithmetic import blocked_matmul_columns
-from uplift.models.sigmoid import evaluate_unscaled, unscaled
+from uplift.models.minimum_norm import solve_damped
+from uplift.models.sigmoid import Sigmoid, evaluate_unscaled, unscaled
 
 MAGIC = b"SPEC"
 RES = 64

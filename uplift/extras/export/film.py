@@ -29,8 +29,8 @@ from typing import Any
 
 import numpy as np
 
-from uplift.colorimetry import Sensor, solid
 from uplift.colorimetry.illuminants import Illuminant
+from uplift.colorimetry.object_colours import solid
 from uplift.colorimetry.observer import (
     DEFAULT_OBSERVER,
     END,
@@ -40,6 +40,7 @@ from uplift.colorimetry.observer import (
     illuminant_spd,
     matching_functions,
 )
+from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Array, StrPath
 from uplift.common.errors import OptionError
 from uplift.common.files import atomic_write, write_text
@@ -48,7 +49,7 @@ from uplift.extras.colour.srgb import decode
 from uplift.extras.export.outputs import output_files
 from uplift.extras.export.program import read_source
 from uplift.extras.files.outputs import check_outputs
-from uplift.lookup import Cube
+from uplift.lookup.cube import Cube
 
 SIZE = 192
 MIN_SIZE = 2

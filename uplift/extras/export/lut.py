@@ -15,16 +15,18 @@ from typing import Any
 
 import numpy as np
 
-from uplift.colorimetry import Sensor, delta_e_rgb
+from uplift.colorimetry.delta_e import delta_e_rgb
 from uplift.colorimetry.illuminants import Illuminant
 from uplift.colorimetry.observer import display_sensors
+from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Array, StrPath, Values
 from uplift.common.errors import OptionError
 from uplift.common.files import write_text
 from uplift.extras.colour.srgb import decode
 from uplift.extras.export.material_error import material_error
 from uplift.extras.export.table_error import TableError, find_errors
-from uplift.lookup import Cube, blockwise
+from uplift.lookup.blocks import blockwise
+from uplift.lookup.cube import Cube
 
 SIZE = 33
 MIN_SIZE = 2

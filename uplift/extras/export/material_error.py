@@ -8,9 +8,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from uplift.colorimetry import delta_e_spectra, observer
+from uplift.colorimetry import observer
+from uplift.colorimetry.delta_e import delta_e_spectra
 from uplift.colorimetry.illuminants import Illuminant
-from uplift.lookup import Cube
+from uplift.lookup.cube import Cube
 from uplift.lookup.errors_under_lights import evidence, has_evidence
 
 BOUND = 0.95

@@ -27,7 +27,8 @@ from uplift.common.errors import (
 from uplift.common.files import atomic_write, write_text
 from uplift.common.text import pluralise, round_up
 from uplift.common.version import version
-from uplift.cube import CubeData, digest
+from uplift.cube.data import CubeData
+from uplift.cube.file import digest
 from uplift.extras.export.outputs import output_files
 from uplift.extras.export.program_table import (
     COLUMNS,
@@ -39,7 +40,7 @@ from uplift.extras.export.program_table import (
 )
 from uplift.extras.export.rounding import rounding_error
 from uplift.extras.files.outputs import check_outputs
-from uplift.lookup import Cube
+from uplift.lookup.cube import Cube
 
 LARGE = 16_000_000
 """Size in bytes above which compilation of a header is slow."""

@@ -11,11 +11,11 @@ import numpy as np
 
 from uplift.common.arrays import Array, Floats, Mask, Values
 from uplift.common.errors import OptionError
-from uplift.cube import CubeData
-from uplift.lattice import EntryBoxes
+from uplift.cube.data import CubeData
+from uplift.lattice.entry_boxes import EntryBoxes
 from uplift.lookup.refine import LEAST, MOST, REACH, SLOPE, STEEP, pull
-from uplift.models import Moments, Sigmoid
-from uplift.models.moments import WARPS, warped
+from uplift.models.moments import WARPS, Moments, warped
+from uplift.models.sigmoid import Sigmoid
 
 BIN_COUNT = 1024
 """Even bins of [0, 1]: few of them contain more than one node."""

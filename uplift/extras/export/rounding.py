@@ -3,11 +3,11 @@
 import numpy as np
 
 from uplift.common.arrays import Array
-from uplift.cube import CubeData
+from uplift.cube.data import CubeData
 from uplift.extras.export.program_table import moved_cells
-from uplift.lookup import around
-from uplift.lookup.interpolate import fading_share
-from uplift.models import Model, Moments, reflectance
+from uplift.lookup.interpolate import around, fading_share
+from uplift.models.model import Model, reflectance
+from uplift.models.moments import Moments
 
 SPECTRA = 1 << 13
 """Spectra by which the change by single precision is bounded."""

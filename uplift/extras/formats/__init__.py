@@ -2,7 +2,7 @@
 libraries. Each one is a file, and a row of `FORMATS`.
 """
 
-from uplift.atlas import Format
+from uplift.atlas.formats import Format
 
 XML = r"\A\s*<(?s:.{0,4000}?<)?(?:[\w.-]+:)?"
 """Text before the name of an element near the beginning of an XML file."""

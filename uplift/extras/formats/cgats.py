@@ -11,7 +11,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from uplift.atlas import EXPORT, Document, Header, check_scale, one_line, parse_number
+from uplift.atlas.atlas import Header
+from uplift.atlas.document import EXPORT, Document, check_scale, one_line, parse_number
 from uplift.common.text import parse_float
 from uplift.extras.files.csv import split_line
 from uplift.extras.formats.measurements import Measurements, wrong_quantity

@@ -10,7 +10,8 @@ from typing import Any
 
 import numpy as np
 
-from uplift.atlas import Document, Header, one_line
+from uplift.atlas.atlas import Header
+from uplift.atlas.document import Document, one_line
 from uplift.common.text import listed
 from uplift.extras.formats.measurements import Measurements, not_used_note, parsed_by
 from uplift.extras.formats.quantities import (

@@ -9,7 +9,8 @@ from pathlib import Path
 
 import numpy as np
 
-from uplift.atlas import Atlas, Document, Header, read_document
+from uplift.atlas.atlas import Atlas, Header
+from uplift.atlas.document import Document, read_document
 from uplift.common.errors import OutputError
 from uplift.common.text import pluralise
 from uplift.extras.files.csv import csv_text, find_delimiter, plain_cell

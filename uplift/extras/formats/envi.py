@@ -4,7 +4,7 @@ from pathlib import Path
 
 import numpy as np
 
-from uplift.atlas import (
+from uplift.atlas.document import (
     Document,
     check_scale,
     one_line,

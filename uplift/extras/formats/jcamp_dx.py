@@ -7,7 +7,7 @@ from itertools import chain
 
 import numpy as np
 
-from uplift.atlas import EXPORT, Document, one_line, truncate
+from uplift.atlas.document import EXPORT, Document, one_line, truncate
 from uplift.common.text import pluralise
 from uplift.extras.formats.measurements import Measurements, parsed_by
 from uplift.extras.formats.quantities import OTHER, Quantity, label_quantity

@@ -12,21 +12,18 @@ from itertools import chain
 
 import numpy as np
 
-from uplift.atlas import (
-    EXPORT,
+from uplift.atlas.atlas import (
     HIGHEST,
     LOWEST,
     SLACK,
     USED,
     Atlas,
-    Document,
     Entry,
     Header,
     SkippedEntry,
     Source,
-    SourceLocation,
-    truncate,
 )
+from uplift.atlas.document import EXPORT, Document, SourceLocation, truncate
 from uplift.common.errors import AtlasError, needs_package
 from uplift.common.text import listed, pluralise, printable
 from uplift.extras.formats.quantities import (

@@ -8,7 +8,8 @@ from dataclasses import KW_ONLY, dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from uplift.atlas import USED, VISIBLE, SourceLocation
+from uplift.atlas.atlas import USED, VISIBLE
+from uplift.atlas.document import SourceLocation
 from uplift.common.arrays import Array, Mask
 from uplift.extras.formats.quantities import Quantity
 

@@ -4,7 +4,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from uplift.atlas import ASSUMED, HIGHEST, SourceLocation, truncate
+from uplift.atlas.atlas import ASSUMED, HIGHEST
+from uplift.atlas.document import SourceLocation, truncate
 from uplift.common.errors import UpliftWarning, warn
 from uplift.extras.formats.samples import Samples
 from uplift.extras.formats.statements import PERCENT, Scale

@@ -9,7 +9,7 @@ import zipfile
 from dataclasses import replace
 from typing import Any
 
-from uplift.atlas import Document, one_line
+from uplift.atlas.document import Document, one_line
 from uplift.common.errors import AtlasError
 from uplift.extras.files.csv import plain_cell
 from uplift.extras.formats.measurements import Measurements, parsed_by

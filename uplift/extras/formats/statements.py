@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from uplift.atlas import SourceLocation, truncate
+from uplift.atlas.document import SourceLocation, truncate
 from uplift.common.arrays import Array
 from uplift.extras.formats.quantities import TABLE, any_of, plain_text
 

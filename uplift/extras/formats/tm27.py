@@ -1,6 +1,6 @@
 """Reader of IES TM-27-14 (``.spdx``), by colour-science."""
 
-from uplift.atlas import Document, one_line
+from uplift.atlas.document import Document, one_line
 from uplift.common.colour_science import colour_science
 from uplift.extras.formats.measurements import Measurements, parsed_by
 from uplift.extras.formats.quantities import POWER, Quantity, label_quantity

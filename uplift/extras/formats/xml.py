@@ -3,7 +3,7 @@
 from typing import Any
 from xml.parsers import expat
 
-from uplift.atlas import EXPORT, Document
+from uplift.atlas.document import EXPORT, Document
 from uplift.common.errors import AtlasError
 
 MAX_DEPTH = 64

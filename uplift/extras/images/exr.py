@@ -9,14 +9,15 @@ from typing import Any
 
 import numpy as np
 
-from uplift.colorimetry import delta_e_rgb
+from uplift.colorimetry.delta_e import delta_e_rgb
 from uplift.colorimetry.gamut import Gamut
 from uplift.common.arrays import Floats, StrPath, Values
 from uplift.common.errors import OutputError
 from uplift.common.files import atomic_write
 from uplift.common.machine import check_memory
-from uplift.cube import CubeData, digest
-from uplift.lattice import Status
+from uplift.cube.data import CubeData
+from uplift.cube.file import digest
+from uplift.lattice.point_table import Status
 
 NODE_BYTES = 220
 """Memory of a node in all images, without its coefficients."""

@@ -13,19 +13,19 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from uplift.colorimetry import (
-    Light,
-    Sensor,
+from uplift.colorimetry.delta_e import (
     delta_e_2000,
     delta_e_2000_weights,
     lab,
     lab_jacobian,
 )
+from uplift.colorimetry.sensor import Light, Sensor
 from uplift.common.arrays import Array
 from uplift.extras.looks.bounded_least_squares import solve_bounded
-from uplift.fit import FittedEntries, Problem, fit_entries, join_entries
+from uplift.fit.entries import FittedEntries, fit_entries, join_entries
+from uplift.fit.problem import Problem
 from uplift.fit.solver import LeastChange
-from uplift.models import evaluate
+from uplift.models.model import evaluate
 
 MET = 0.1
 """ΔE00 within which a target is met."""

@@ -4,14 +4,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from uplift.colorimetry import Light, lab, rgb_to_lab
+from uplift.colorimetry.delta_e import lab, rgb_to_lab
 from uplift.colorimetry.likely_errors import (
     ExpectedError,
     learn_radii,
     mahalanobis,
 )
+from uplift.colorimetry.sensor import Light
 from uplift.common.arrays import Array
-from uplift.cube import CubeData
+from uplift.cube.data import CubeData
 from uplift.lookup.errors_under_lights import Evidence, evidence
 
 LIKELY = 0.95

@@ -12,23 +12,17 @@ from functools import lru_cache
 
 import numpy as np
 
-from uplift.colorimetry import (
-    Light,
-    Sensor,
-    delta_e_2000,
-    in_unit_cube,
-    lab,
-    solid,
-    solid_volume,
-)
+from uplift.colorimetry.delta_e import delta_e_2000, lab
 from uplift.colorimetry.gamut import SRGB, conversion
+from uplift.colorimetry.object_colours import solid, solid_volume
+from uplift.colorimetry.sensor import Light, Sensor, in_unit_cube
 from uplift.common.arrays import Array, Indices, Mask
 from uplift.common.errors import ColourError
-from uplift.cube import CubeData
+from uplift.cube.data import CubeData
 from uplift.extras.looks import mesh, mismatch
 from uplift.extras.looks.lab_errors import LabErrors, lab_errors
-from uplift.lattice import Lattice
-from uplift.lookup import Cube
+from uplift.lattice.lattice import Lattice
+from uplift.lookup.cube import Cube
 from uplift.lookup.interpolate import spectra
 from uplift.lookup.outside import reflectance_anywhere
 

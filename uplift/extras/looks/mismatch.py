@@ -26,15 +26,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from uplift.colorimetry import (
-    Light,
-    Sensor,
-    delta_e_2000,
-    format_rgb,
-    lab,
-    lab_jacobian,
-    solid,
-)
+from uplift.colorimetry.delta_e import delta_e_2000, lab, lab_jacobian
+from uplift.colorimetry.object_colours import solid
+from uplift.colorimetry.sensor import Light, Sensor, format_rgb
 from uplift.common.arrays import Array, Indices, blocks
 from uplift.common.errors import ColourError
 from uplift.extras.looks.extreme_spectra import extreme_spectra, first_basis

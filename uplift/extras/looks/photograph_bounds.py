@@ -2,12 +2,12 @@
 the colours that reflectances of one RGB can have.
 """
 
-from uplift.colorimetry import Light
+from uplift.colorimetry.sensor import Light
 from uplift.common.arrays import Array
 from uplift.extras.looks import mismatch
 from uplift.extras.looks.lab_errors import lab_errors_from
 from uplift.extras.looks.metamer_bounds import Bounds, bounds_around
-from uplift.extras.photographs import Photographs
+from uplift.extras.photographs.answers import Photographs
 from uplift.extras.photographs.errors import photographed
 
 

@@ -8,11 +8,12 @@ from typing import Any
 
 import numpy as np
 
-from uplift.colorimetry import Sensor, solid
+from uplift.colorimetry.object_colours import solid
 from uplift.colorimetry.observer import display_sensors
+from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Array
 from uplift.common.errors import LookError, UpliftError, UpliftWarning, warn
-from uplift.cube import AtlasTable
+from uplift.cube.data import AtlasTable
 from uplift.extras.colour.srgb import hex_codes, parse_colour
 from uplift.extras.looks.design import MET, LookGoal, design_reflectance, fit_designs
 from uplift.extras.looks.look import (
@@ -23,10 +24,11 @@ from uplift.extras.looks.look import (
     format_rgb,
     look_error,
 )
-from uplift.fit import Prior, Problem, join_entries
-from uplift.fit.entries import MAX_STEPS
+from uplift.fit.entries import MAX_STEPS, join_entries
+from uplift.fit.prior import Prior
+from uplift.fit.problem import Problem
 from uplift.fit.solver import solve_in_numpy
-from uplift.models import Model, evaluate
+from uplift.models.model import Model, evaluate
 from uplift.pipeline.entries import Constraints, MeasuredEntries
 
 SAME_CODE = 0.5

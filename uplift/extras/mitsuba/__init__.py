@@ -49,6 +49,6 @@ Examples
     mi.load_dict({"type": "uplift_envmap", "filename": "sky.exr"})
 """
 
-from uplift.extras.mitsuba.plugin import register
+import lazy_loader
 
-__all__ = ["register"]
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

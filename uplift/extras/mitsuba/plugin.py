@@ -24,8 +24,8 @@ from uplift.extras.mitsuba import texels
 from uplift.extras.texture.colours import Counts
 from uplift.extras.texture.emission import prepare_lights
 from uplift.extras.texture.exr_file import is_exr
-from uplift.lookup import Cube, load
-from uplift.models import evaluate
+from uplift.lookup.cube import Cube, load
+from uplift.models.model import evaluate
 
 START = 360
 """First wavelength of Mitsuba in nm."""

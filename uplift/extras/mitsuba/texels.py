@@ -20,9 +20,11 @@ from uplift.extras.texture.channels import coloured_parts
 from uplift.extras.texture.colours import Counts, space_warnings
 from uplift.extras.texture.image import Image, open_image
 from uplift.extras.texture.uplifter import Converter, Multipliers, Uplifter, prepare
-from uplift.lookup import Cube, blockwise
-from uplift.models import Model, Moments, evaluate, from_description
-from uplift.models.moments import multipliers_of_rounded
+from uplift.lookup.blocks import blockwise
+from uplift.lookup.cube import Cube
+from uplift.models.model import Model, evaluate
+from uplift.models.moments import Moments, multipliers_of_rounded
+from uplift.models.registry import from_description
 
 MEAN_WAVELENGTHS = np.arange(380.0, 781.0, 25.0)
 """Wavelengths in nm of the mean reflectance, by which Mitsuba chooses between lobes; it

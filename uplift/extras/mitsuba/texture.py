@@ -11,8 +11,9 @@ import mitsuba as mi
 import numpy as np
 
 from uplift.extras.mitsuba.texels import PADDING, Placement, Samples, Texels
-from uplift.models import Model, Moments, Sigmoid
-from uplift.models.moments import warped
+from uplift.models.model import Model
+from uplift.models.moments import Moments, warped
+from uplift.models.sigmoid import Sigmoid
 
 HASH_ROUNDS = 3
 ARCTAN = (

@@ -9,9 +9,10 @@ from typing import Any
 
 import numpy as np
 
-from uplift.colorimetry import Sensor, lab_to_xyz
+from uplift.colorimetry.delta_e import lab_to_xyz
 from uplift.colorimetry.gamut import SRGB, Gamut
 from uplift.colorimetry.observer import display_sensors
+from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Array, StrPath
 from uplift.extras.colour.query import QueryResult
 from uplift.extras.colour.srgb import to_display_codes
@@ -27,7 +28,7 @@ from uplift.extras.pages.panels import (
     spectra_panel,
     square_limits,
 )
-from uplift.lookup import Cube
+from uplift.lookup.cube import Cube
 
 SIZE = (7.2, 4.0)
 """Inches of a plot of curves."""

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from uplift.common.arrays import Array, StrPath
 from uplift.common.files import check_output
 from uplift.common.text import pluralise
-from uplift.cube import CubeData
+from uplift.cube.data import CubeData
 from uplift.extras.colour.srgb import decode, encode
 from uplift.extras.images import exr
 from uplift.extras.pages.figure import HIGHLIGHT, check_suffix, matplotlib, write_figure

@@ -8,36 +8,6 @@ and the n spectra of a mixture (..., n, N). Leading axes broadcast. docs/mixing.
 an example and results.
 """
 
-from uplift.extras.paint.coats import Ingredients, Medium, make_coat, mix
-from uplift.extras.paint.optics import Surface
-from uplift.extras.paint.overpaint import overpainter
-from uplift.extras.paint.paint_advice import PaintAdvice, advise_samples
-from uplift.extras.paint.paint_fit import PaintFit, fit_paints
-from uplift.extras.paint.paint_samples import PaintSamples, read_paint_samples
-from uplift.extras.paint.paints import Paints, strengths
-from uplift.extras.paint.paints_file import read_paints, write_paints
-from uplift.extras.paint.pigments import dispersive
-from uplift.extras.paint.recipes import PaintRecipe, PaintTarget, match
+import lazy_loader
 
-__all__ = [
-    "Ingredients",
-    "Medium",
-    "PaintAdvice",
-    "PaintFit",
-    "PaintRecipe",
-    "PaintSamples",
-    "PaintTarget",
-    "Paints",
-    "Surface",
-    "advise_samples",
-    "dispersive",
-    "fit_paints",
-    "make_coat",
-    "match",
-    "mix",
-    "overpainter",
-    "read_paint_samples",
-    "read_paints",
-    "strengths",
-    "write_paints",
-]
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

@@ -11,12 +11,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from uplift.colorimetry import Sensor
+from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Array, Indices
 from uplift.extras.colour.srgb import decode
 from uplift.extras.paint.optics import as_shares
 from uplift.extras.paint.pigments import DARKEST, Pigment, dispersive, from_opaque
-from uplift.lookup import Cube
+from uplift.lookup.cube import Cube
 
 BANDS = 8
 """One register of a processor with AVX2 holds the numbers of eight bands."""

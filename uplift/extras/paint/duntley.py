@@ -26,7 +26,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from uplift.atlas import read_any, read_document
+from uplift.atlas.document import read_document
+from uplift.atlas.formats import read_any
 from uplift.common.arrays import Array, StrPath
 from uplift.extras.formats.measurements import Measurements
 from uplift.extras.paint.optics import DirectedLayer

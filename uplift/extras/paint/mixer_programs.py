@@ -19,14 +19,15 @@ from uplift.common.errors import unknown_name
 from uplift.common.files import atomic_write, write_text
 from uplift.common.text import round_up
 from uplift.common.version import version
-from uplift.cube import CubeData, digest
+from uplift.cube.data import CubeData
+from uplift.cube.file import digest
 from uplift.extras.colour.srgb import decode, encode
 from uplift.extras.export.outputs import output_files
 from uplift.extras.export.program import comment, identifier, literal, read_source
 from uplift.extras.files.outputs import check_outputs
 from uplift.extras.paint.bands import BANDS
 from uplift.extras.paint.rgb_mixer import DIM, RgbMixer, make_mixer
-from uplift.lookup import Cube
+from uplift.lookup.cube import Cube
 
 LINEAR_END = 0.0031308
 """Largest linear value on the straight part of the curve of sRGB."""

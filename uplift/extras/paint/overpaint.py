@@ -14,7 +14,8 @@ from uplift.extras.images import exr
 from uplift.extras.paint.coats import Coat
 from uplift.extras.texture.colours import Counts, check_encoding
 from uplift.extras.texture.uplifter import Converter
-from uplift.lookup import Cube, blockwise
+from uplift.lookup.blocks import blockwise
+from uplift.lookup.cube import Cube
 
 
 @dataclass(frozen=True, eq=False)

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from uplift.colorimetry import delta_e_2000_weights
+from uplift.colorimetry.delta_e import delta_e_2000_weights
 from uplift.common.arrays import Array
 from uplift.extras.paint.paint_fit import PaintFit
 from uplift.extras.paint.paint_samples import MeasuredSpectra, PaintSamples

@@ -14,7 +14,7 @@ from itertools import chain, combinations
 
 import numpy as np
 
-from uplift.atlas import SourceLocation
+from uplift.atlas.document import SourceLocation
 from uplift.common.arrays import Array
 from uplift.common.errors import AtlasError
 from uplift.common.text import format_value

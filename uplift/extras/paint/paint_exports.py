@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from uplift.colorimetry import delta_e_rgb
+from uplift.colorimetry.delta_e import delta_e_rgb
 from uplift.common.arrays import Array
 from uplift.common.errors import OptionError
 from uplift.common.files import write_text

@@ -17,7 +17,9 @@ from typing import Any
 
 import numpy as np
 
-from uplift.colorimetry import Sensor, delta_e_2000, lab, observer
+from uplift.colorimetry import observer
+from uplift.colorimetry.delta_e import delta_e_2000, lab
+from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Array, Indices
 from uplift.common.errors import OptionError, UpliftWarning, warn
 from uplift.common.progress import Progress, ProgressCallback, ignore_progress
@@ -321,7 +323,7 @@ def _ascend(
     ``evaluate`` maps variables to the differences (m,) to the measured values, and
     ``differentiate`` to their Jacobian (m, d). ``spread`` (m,) is that of the values.
     """
-    from uplift.fit import Marquardt
+    from uplift.fit.entries import Marquardt
     from uplift.fit.solver import iterate_rows
 
     steps = count()
@@ -393,6 +395,6 @@ def _lab(rgb: Any, sensor: Sensor) -> Any:
 
 
 def _packaged_guess(rgb: Array, wavelengths: Array) -> Array:
-    from uplift.lookup import load
+    from uplift.lookup.cube import load
 
     return load().reflectance(np.clip(rgb, 0, 1), wavelengths)

@@ -6,7 +6,8 @@ from pathlib import Path
 
 import numpy as np
 
-from uplift.colorimetry import Sensor, observer
+from uplift.colorimetry import observer
+from uplift.colorimetry.sensor import Sensor
 from uplift.colorimetry.tables import bradford
 from uplift.common.files import write_text
 from uplift.extras.colour.light_sets import DESCRIPTIONS

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from uplift.colorimetry import Sensor
+from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Array
 from uplift.extras.paint.optics import Surface
 from uplift.extras.paint.paint_samples import PaintSamples

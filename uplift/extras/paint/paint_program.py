@@ -14,7 +14,7 @@ from string import Template
 
 import numpy as np
 
-from uplift.colorimetry import delta_e_rgb
+from uplift.colorimetry.delta_e import delta_e_rgb
 from uplift.common.arrays import Array
 from uplift.common.errors import unknown_name
 from uplift.common.files import write_text

@@ -11,7 +11,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from uplift.atlas import VISIBLE, Atlas, on_grid, read_atlas
+from uplift.atlas.atlas import VISIBLE, Atlas
+from uplift.atlas.resampling import on_grid
+from uplift.atlas.sources import read_atlas
 from uplift.common.arrays import Array, Mask, StrPath
 from uplift.common.errors import unknown_name
 from uplift.common.text import format_value

@@ -7,8 +7,9 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike
 
-from uplift.colorimetry import Light, Sensor, observer
+from uplift.colorimetry import observer
 from uplift.colorimetry.illuminants import Illuminant
+from uplift.colorimetry.sensor import Light, Sensor
 from uplift.common.arrays import Array, as_array, as_nm
 from uplift.common.errors import OptionError, UpliftWarning, unknown_name, warn
 from uplift.common.text import listed

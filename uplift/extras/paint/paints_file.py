@@ -8,7 +8,7 @@ from typing import Annotated, Literal, Self
 import numpy as np
 from pydantic import Field, model_validator
 
-from uplift.atlas import VISIBLE
+from uplift.atlas.atlas import VISIBLE
 from uplift.common.arrays import StrPath
 from uplift.common.errors import PaintError
 from uplift.common.files import write_text

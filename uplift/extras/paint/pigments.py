@@ -26,7 +26,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from uplift.colorimetry import Sensor
+from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Array
 from uplift.common.errors import ColourError
 from uplift.extras.paint.optics import TINY, Layer, as_shares, weighted_sum

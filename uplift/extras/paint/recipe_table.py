@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from uplift.atlas import SourceLocation, read_document, truncate
+from uplift.atlas.document import SourceLocation, read_document, truncate
 from uplift.common.arrays import StrPath
 from uplift.common.text import format_value
 from uplift.extras.files.csv import (

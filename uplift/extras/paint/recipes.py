@@ -14,7 +14,8 @@ from itertools import combinations, product
 
 import numpy as np
 
-from uplift.colorimetry import Light, delta_e_2000, delta_e_2000_terms, lab
+from uplift.colorimetry.delta_e import delta_e_2000, delta_e_2000_terms, lab
+from uplift.colorimetry.sensor import Light
 from uplift.common.arrays import Array, Indices, blocks
 from uplift.common.errors import OptionError
 from uplift.extras.paint.optics import TINY

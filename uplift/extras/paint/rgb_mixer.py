@@ -24,7 +24,7 @@ from uplift.extras.export.program_table import check_complete
 from uplift.extras.paint.bands import BANDS, choose_bands, opaque
 from uplift.extras.paint.optics import as_shares, weighted_sum
 from uplift.extras.paint.pigments import DARKEST, Pigment, dispersive
-from uplift.lookup import Cube
+from uplift.lookup.cube import Cube
 
 DIM = 17
 MIN_DIM = 2

@@ -23,8 +23,9 @@ from functools import cache
 import numpy as np
 from numpy.typing import ArrayLike
 
-from uplift.colorimetry import Sensor, observer
+from uplift.colorimetry import observer
 from uplift.colorimetry.illuminants import DEFAULT_ILLUMINANT
+from uplift.colorimetry.sensor import Sensor
 from uplift.colorimetry.tables import samples
 from uplift.common.arrays import Array
 from uplift.extras.paint import pigments
@@ -38,7 +39,7 @@ from uplift.extras.paint.optics import (
     weighted_sum,
 )
 from uplift.extras.paint.pigments import Pigment, Scattering
-from uplift.lookup import Cube
+from uplift.lookup.cube import Cube
 
 # from components (..., n, K) and parts (..., n) to the mixture (..., K)
 Mix = Callable[[Array, Array], Array]

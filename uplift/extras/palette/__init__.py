@@ -5,18 +5,6 @@ Sections and equations are those of S. Bergner, T. Möller, M. S. Drew, *A Spect
 Engine for Visualization*, 2004.
 """
 
-from uplift.extras.palette.colours import illuminant
-from uplift.extras.palette.design import design, matrix, write_designed
-from uplift.extras.palette.factor import standard_model
-from uplift.extras.palette.spec import read_palette
-from uplift.extras.palette.unmet import unmet_goals
+import lazy_loader
 
-__all__ = [
-    "design",
-    "illuminant",
-    "matrix",
-    "read_palette",
-    "standard_model",
-    "unmet_goals",
-    "write_designed",
-]
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

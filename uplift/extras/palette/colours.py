@@ -5,8 +5,10 @@ derivatives, and powers of lights.
 import numpy as np
 from numpy.typing import ArrayLike
 
-from uplift.colorimetry import Sensor, lab_jacobian, observer
+from uplift.colorimetry import observer
+from uplift.colorimetry.delta_e import lab_jacobian
 from uplift.colorimetry.illuminants import Illuminant
+from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Array
 from uplift.common.errors import OptionError
 

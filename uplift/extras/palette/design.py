@@ -5,8 +5,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from uplift.atlas import HIGHEST, LOWEST, Atlas, Entry, Header, write_atlas
-from uplift.colorimetry import delta_e_rgb
+from uplift.atlas.atlas import HIGHEST, LOWEST, Atlas, Entry, Header
+from uplift.atlas.sources import write_atlas
+from uplift.colorimetry.delta_e import delta_e_rgb
 from uplift.common.arrays import Array, StrPath
 from uplift.common.errors import PaletteError, UpliftWarning, warn
 from uplift.common.text import listed, pluralise

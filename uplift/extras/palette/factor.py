@@ -8,13 +8,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from uplift import lookup
-from uplift.colorimetry import Sensor
+from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Array, as_array
 from uplift.common.errors import OptionError
 from uplift.extras.colour.light_sets import PALETTE_LIGHTS
 from uplift.extras.palette.colours import illuminant, lab_per_rgb, screen_matrix
 from uplift.extras.palette.sharpen import make_light_paths, sharpen
+from uplift.lookup.cube import load
 
 COUNTS = range(3, 13)  # supported numbers of coefficients; Bergner uses 5 to 7
 # least weight of a wavelength, so that those of low sensitivity are fitted too
@@ -96,7 +96,7 @@ def standard_model(sensor: Sensor, count: int = 7) -> FactorModel:
         If ``count`` is not supported.
     """
     materials = np.array(list(itertools.product(NODES, repeat=3)))
-    reflectances = lookup.load().reflectance(materials, sensor.wavelengths)
+    reflectances = load().reflectance(materials, sensor.wavelengths)
     lights = np.array([illuminant(sensor, name) for name in PALETTE_LIGHTS])
     return factor_model(sensor, reflectances, lights, count)
 

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from uplift.colorimetry import Sensor
+from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Array
 from uplift.common.machine import single_threaded_blas
 from uplift.extras.palette.colours import lab_per_rgb, screen_matrix

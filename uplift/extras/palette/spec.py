@@ -3,7 +3,8 @@
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 
-from uplift.colorimetry import Sensor, observer
+from uplift.colorimetry import observer
+from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Array, StrPath
 from uplift.common.errors import PaletteError, unknown_name
 from uplift.extras.colour.srgb import WrittenColour

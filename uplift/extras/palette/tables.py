@@ -20,9 +20,11 @@ from pydantic import (
     model_validator,
 )
 
-from uplift import lookup
-from uplift.atlas import Atlas, find_atlas_file, on_grid, read_atlas
-from uplift.colorimetry import Sensor, format_rgb, in_unit_cube, observer
+from uplift.atlas.atlas import Atlas
+from uplift.atlas.resampling import on_grid
+from uplift.atlas.sources import find_atlas_file, read_atlas
+from uplift.colorimetry import observer
+from uplift.colorimetry.sensor import Sensor, format_rgb, in_unit_cube
 from uplift.common.arrays import Array
 from uplift.common.errors import ColourError, PaletteError, unknown_name
 from uplift.common.text import format_value
@@ -38,6 +40,7 @@ from uplift.extras.files.spec import (
 from uplift.extras.palette.colours import MAX_KELVIN, MIN_KELVIN, illuminant, planck
 from uplift.extras.palette.factor import COUNTS
 from uplift.extras.palette.palette import Fit, Palette, SpectrumSpec
+from uplift.lookup.cube import load
 
 NAME = re.compile(r"[^\W_][\w .+-]*(?<! )")  # names appear in tables, plots and atlases
 
@@ -200,7 +203,7 @@ class _RgbMaterial(SpecModel):
         return self.cube
 
     def spectrum(self, name: str, sensor: Sensor, folder: Path) -> SpectrumSpec:
-        cube = lookup.load(None if self.cube is None else folder / self.cube)
+        cube = load(None if self.cube is None else folder / self.cube)
         rgb = self.rgb.rgb(cube.data.sensor)
         if not in_unit_cube(rgb):
             problem = (

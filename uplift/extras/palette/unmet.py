@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from uplift.colorimetry import delta_e_rgb
+from uplift.colorimetry.delta_e import delta_e_rgb
 from uplift.common.arrays import Array
 from uplift.extras.palette.design import Design, design, matrix
 from uplift.extras.palette.palette import (

@@ -2,21 +2,6 @@
 differ: answers that several photographs decide, and samples where nothing does.
 """
 
-from uplift.extras.photographs.answers import Answers, Photographs, prepare
-from uplift.extras.photographs.colour import PhotographedColour
-from uplift.extras.photographs.errors import light_errors
-from uplift.extras.photographs.photograph import Noise, Photograph, photograph
-from uplift.extras.photographs.samples import SpectrumSampler, prepare_samples
+import lazy_loader
 
-__all__ = [
-    "Answers",
-    "Noise",
-    "Photograph",
-    "PhotographedColour",
-    "Photographs",
-    "SpectrumSampler",
-    "light_errors",
-    "photograph",
-    "prepare",
-    "prepare_samples",
-]
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

@@ -25,8 +25,9 @@ from uplift.common.errors import OptionError
 from uplift.extras.photographs.changes import changed_spectra
 from uplift.extras.photographs.metamers import Metamers, learn_metamers
 from uplift.extras.photographs.photograph import Noise, Photograph, check_different
-from uplift.lattice import Lattice, weighted_sum
-from uplift.lookup import Cube, as_colours, as_wavelengths
+from uplift.lattice.lattice import Lattice, weighted_sum
+from uplift.lookup.blocks import as_colours, as_wavelengths
+from uplift.lookup.cube import Cube
 from uplift.models.brightness import brightness
 
 TABLE = Lattice(np.linspace(0, 1, 17) ** 2)

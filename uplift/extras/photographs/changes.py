@@ -5,7 +5,7 @@ colour.
 import numpy as np
 
 from uplift.common.arrays import Array, Mask, Values
-from uplift.cube import CubeData
+from uplift.cube.data import CubeData
 from uplift.lookup.refine import with_colours
 
 OVERSHOOT = 0.2

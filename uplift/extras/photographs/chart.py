@@ -5,13 +5,8 @@ from itertools import product
 
 import numpy as np
 
-from uplift.colorimetry import (
-    Light,
-    Sensor,
-    delta_e_2000,
-    delta_e_spectra,
-    rgb_to_lab,
-)
+from uplift.colorimetry.delta_e import delta_e_2000, delta_e_spectra, rgb_to_lab
+from uplift.colorimetry.sensor import Light, Sensor
 from uplift.common.arrays import Array
 from uplift.common.errors import OptionError
 from uplift.extras.photographs.answers import Photographs

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from uplift.colorimetry import Light
+from uplift.colorimetry.sensor import Light
 from uplift.common.arrays import Array
 from uplift.extras.photographs.answers import Photographs
 from uplift.extras.photographs.errors import light_errors

@@ -7,7 +7,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from uplift.colorimetry import Light
+from uplift.colorimetry.sensor import Light
 from uplift.common.arrays import Array
 from uplift.extras.photographs.answers import Photographs
 from uplift.lookup.errors_under_lights import (

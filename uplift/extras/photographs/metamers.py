@@ -16,10 +16,11 @@ from functools import cached_property
 
 import numpy as np
 
-from uplift.colorimetry import Sensor, rgb_to_lab
+from uplift.colorimetry.delta_e import rgb_to_lab
+from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Array, blocks, distances
-from uplift.cube import CubeData
-from uplift.lookup import Cube, load
+from uplift.cube.data import CubeData
+from uplift.lookup.cube import Cube, load
 from uplift.lookup.errors_under_lights import evidence
 from uplift.models.brightness import brightness
 

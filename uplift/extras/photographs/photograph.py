@@ -8,9 +8,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from uplift.colorimetry import Sensor, observer
+from uplift.colorimetry import observer
 from uplift.colorimetry.camera import CAMERA, Camera
 from uplift.colorimetry.illuminants import Illuminant
+from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Array
 from uplift.common.errors import OptionError, unknown_name
 

@@ -19,7 +19,8 @@ from numpy.typing import ArrayLike, NDArray
 from uplift.common.arrays import Array, blocks
 from uplift.extras.photographs.changes import changed_spectra
 from uplift.extras.photographs.metamers import Metamers, learn_metamers
-from uplift.lookup import Cube, as_colours, as_wavelengths, as_whole_number
+from uplift.lookup.blocks import as_colours, as_wavelengths, as_whole_number
+from uplift.lookup.cube import Cube
 from uplift.models.brightness import brightness
 
 TAIL = 8.0

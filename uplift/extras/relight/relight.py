@@ -18,14 +18,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from uplift.colorimetry import Sensor, delta_e_2000, rgb_to_lab
+from uplift.colorimetry.delta_e import delta_e_2000, rgb_to_lab
 from uplift.colorimetry.gamut import SRGB, conversion
 from uplift.colorimetry.illuminants import Illuminant
 from uplift.colorimetry.observer import display_sensors
+from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Array, Floats, Mask, StrPath
 from uplift.common.errors import OutputError
 from uplift.common.files import atomic_write
-from uplift.cube import common_sensor
+from uplift.cube.data import common_sensor
 from uplift.extras.colour.light_sets import DESCRIPTIONS, RELIGHT_LIGHTS
 from uplift.extras.colour.srgb import to_display_codes
 from uplift.extras.pages.figure import RAMP, ramp_codes, write_figure
@@ -34,7 +35,7 @@ from uplift.extras.pages.marks import error_map, picture
 from uplift.extras.pages.panels import Axis, Panel, draw
 from uplift.extras.report.measures import mean_p95_max
 from uplift.extras.texture.image import read_error, utf8_name
-from uplift.lookup import Cube
+from uplift.lookup.cube import Cube
 from uplift.lookup.node_table import prepare_products
 
 # name of the method that multiplies the RGB of the image by those of the light

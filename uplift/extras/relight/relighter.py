@@ -25,7 +25,7 @@ from uplift.extras.texture.uplifter import (
     Sampler,
     channel_names,
 )
-from uplift.lookup import Cube
+from uplift.lookup.cube import Cube
 from uplift.lookup.node_table import prepare_products
 
 

@@ -12,7 +12,7 @@ from uplift.common.errors import ColourError
 from uplift.common.files import read_bytes
 from uplift.common.text import parse_float
 from uplift.extras.files.csv import parse_csv
-from uplift.lookup import Cube
+from uplift.lookup.cube import Cube
 
 MAX_BYTES = 1 << 28
 

@@ -6,12 +6,13 @@ from typing import Any
 
 import numpy as np
 
-from uplift.atlas import Atlas
-from uplift.colorimetry import Sensor
+from uplift.atlas.atlas import Atlas
 from uplift.colorimetry.illuminants import Illuminant
 from uplift.colorimetry.observer import display_sensors
+from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Array
-from uplift.cube import CubeData, summarise
+from uplift.cube.data import CubeData
+from uplift.cube.file import summarise
 from uplift.extras.colour.light_sets import REPORT_LIGHTS
 from uplift.extras.report import fidelity, measures
 from uplift.extras.report.charts import (
@@ -23,7 +24,7 @@ from uplift.extras.report.charts import (
 from uplift.extras.report.crowding import Crowding, find_crowding
 from uplift.extras.report.fidelity import Answers, EntryErrors
 from uplift.extras.report.measures import Calibration, check_calibration
-from uplift.lookup import Cube
+from uplift.lookup.cube import Cube
 
 # smaller distances and ΔE00 are rounding errors and are counted in the lowest bin
 MIN_ERROR = 1e-9

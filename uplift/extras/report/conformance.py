@@ -8,11 +8,12 @@ from pathlib import Path
 
 import numpy as np
 
-from uplift.colorimetry import Light, delta_e_2000, lab
+from uplift.colorimetry.delta_e import delta_e_2000, lab
 from uplift.colorimetry.illuminants import Illuminant
 from uplift.colorimetry.observer import light
+from uplift.colorimetry.sensor import Light
 from uplift.common.arrays import Array, StrPath
-from uplift.cube import CubeData
+from uplift.cube.data import CubeData
 from uplift.extras.colour.light_sets import REGRESSION_LIGHTS
 from uplift.extras.report.conformance_chart import (
     COLUMNS,
@@ -27,7 +28,7 @@ from uplift.extras.report.conformance_results import (
     read_spectra,
     spectra_wavelengths,
 )
-from uplift.lookup import Cube
+from uplift.lookup.cube import Cube
 
 LIGHT = "A"
 """Light of the scene: smooth, which keeps noise low, and far from that of the cube."""

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from uplift.common.arrays import Array
-from uplift.cube import CubeData
-from uplift.lattice import EntryBoxes
+from uplift.cube.data import CubeData
+from uplift.lattice.entry_boxes import EntryBoxes
 
 COLUMNS = 40
 ROWS = 25

@@ -10,9 +10,9 @@ from typing import Any
 
 import numpy as np
 
-from uplift.colorimetry import Light
 from uplift.colorimetry.gamut import SRGB
 from uplift.colorimetry.observer import illuminant_spd, matching_functions
+from uplift.colorimetry.sensor import Light
 from uplift.common.arrays import Array, StrPath
 from uplift.common.errors import UpliftWarning
 from uplift.common.files import write_text
@@ -23,7 +23,7 @@ from uplift.extras.images.exr import chromaticities, make_part, write_parts
 from uplift.extras.report.conformance import picture_reference
 from uplift.extras.report.conformance_chart import COLUMNS, ROWS, Chart, make_chart
 from uplift.extras.report.conformance_results import spectra_wavelengths
-from uplift.lookup import Cube
+from uplift.lookup.cube import Cube
 from uplift.pipeline.build import build
 
 CUBE = "conformance.uplift"

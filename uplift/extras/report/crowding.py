@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from uplift.common.arrays import Array, Indices
-from uplift.cube import CubeData
+from uplift.cube.data import CubeData
 from uplift.extras.report.fidelity import EntryErrors, take
 
 # lattice steps; two entries of one cell are never farther apart

@@ -14,9 +14,10 @@ from uplift.common.arrays import Array, Indices
 from uplift.common.errors import OptionError
 from uplift.common.machine import check_memory
 from uplift.common.text import pluralise
-from uplift.cube import CubeData, common_sensor
+from uplift.cube.data import CubeData, common_sensor
 from uplift.extras.report.measures import delta_e_under, mean_p95_max
-from uplift.lookup import Cube, blockwise
+from uplift.lookup.blocks import blockwise
+from uplift.lookup.cube import Cube
 
 NODES = "nodes"
 """Name of the set of the colours of nodes."""

@@ -7,17 +7,21 @@ from typing import Any, TypeVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from uplift.atlas import Atlas, resample
-from uplift.colorimetry import Light, Sensor, delta_e_spectra, in_unit_cube
+from uplift.atlas.atlas import Atlas
+from uplift.atlas.resampling import resample
+from uplift.colorimetry.delta_e import delta_e_spectra
 from uplift.colorimetry.gamut import map_to_gamut
 from uplift.colorimetry.observer import light, on_range
+from uplift.colorimetry.sensor import Light, Sensor, in_unit_cube
 from uplift.common.arrays import Array, Indices
-from uplift.cube import CubeData
+from uplift.cube.data import CubeData
 from uplift.extras.report.measures import delta_e_under, rms_difference
-from uplift.lookup import Cube, load, refine_to_rgb
+from uplift.lookup.cube import Cube, load
 from uplift.lookup.interpolate import lattice_spectra
 from uplift.lookup.outside import MAPPING, reflectance_anywhere
-from uplift.models import Sigmoid, evaluate
+from uplift.lookup.refine import refine_to_rgb
+from uplift.models.model import evaluate
+from uplift.models.sigmoid import Sigmoid
 
 
 @dataclass(frozen=True, eq=False)

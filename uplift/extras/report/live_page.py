@@ -10,12 +10,12 @@ from uplift.common.arrays import Array
 from uplift.common.errors import OptionError
 from uplift.common.files import write_text
 from uplift.common.text import pluralise
-from uplift.cube import CubeData
+from uplift.cube.data import CubeData
 from uplift.extras.colour.srgb import hex_codes
 from uplift.extras.export.program import cube_program
 from uplift.extras.export.program_table import COLUMNS, check_complete, make_table
 from uplift.extras.pages.html import Markup, render, resource
-from uplift.lookup import Cube
+from uplift.lookup.cube import Cube
 
 # illuminants to choose from
 LIGHTS = ("D65", "A", "D50", "FL2", "FL11", "HP1", "LED-B3")

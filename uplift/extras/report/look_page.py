@@ -12,9 +12,9 @@ from typing import Any
 
 import numpy as np
 
-from uplift.colorimetry import Light, Sensor
 from uplift.colorimetry.gamut import SRGB, conversion
 from uplift.colorimetry.observer import display_sensors
+from uplift.colorimetry.sensor import Light, Sensor
 from uplift.common.arrays import Array
 from uplift.common.errors import OptionError
 from uplift.common.text import pluralise
@@ -22,9 +22,8 @@ from uplift.extras.colour.light_sets import DESCRIPTIONS
 from uplift.extras.looks.lab_errors import LIKELY
 from uplift.extras.looks.metamer_bounds import Bounds
 from uplift.extras.pages.html import render, resource
-from uplift.lookup import Cube
-from uplift.models import Moments
-from uplift.models.moments import MAX_COUNT
+from uplift.lookup.cube import Cube
+from uplift.models.moments import MAX_COUNT, Moments
 
 # digits of the numbers of the page: the RGB of its spectra is exact to far less than a
 # code

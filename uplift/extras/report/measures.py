@@ -7,13 +7,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from uplift.colorimetry import Light, delta_e_rgb, delta_e_spectra
+from uplift.colorimetry.delta_e import delta_e_rgb, delta_e_spectra
 from uplift.colorimetry.likely_errors import COVERAGE
+from uplift.colorimetry.sensor import Light
 from uplift.common.arrays import Array
-from uplift.cube import CubeData
-from uplift.lattice import Status
-from uplift.lookup import MODES, Cube
-from uplift.models import reflectance
+from uplift.cube.data import CubeData
+from uplift.lattice.point_table import Status
+from uplift.lookup.cube import Cube
+from uplift.lookup.interpolate import MODES
+from uplift.models.model import reflectance
 
 
 def delta_e_under(lights: Iterable[Light], first: Array, second: Array) -> Array:

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from pydantic_core import to_jsonable_python
 
-from uplift.colorimetry import Sensor
+from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Array
 from uplift.extras.colour.srgb import hex_codes
 from uplift.extras.report.assessment import Assessment

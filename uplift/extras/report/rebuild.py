@@ -7,10 +7,12 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
-from uplift.atlas import Atlas, merge, read_atlas, read_document, shipped_atlases
-from uplift.colorimetry import Sensor
+from uplift.atlas.atlas import Atlas, merge
+from uplift.atlas.document import read_document
+from uplift.atlas.sources import read_atlas, shipped_atlases
 from uplift.colorimetry.camera import Camera
 from uplift.colorimetry.observer import is_camera_file
+from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Mask, StrPath
 from uplift.common.errors import (
     CubeFileError,
@@ -23,10 +25,10 @@ from uplift.common.errors import (
 from uplift.common.progress import ProgressCallback, ignore_progress
 from uplift.common.text import pluralise
 from uplift.common.version import is_older, version
-from uplift.cube import CubeData
+from uplift.cube.data import CubeData
 from uplift.extras.looks.targets import recorded_looks
-from uplift.lattice import EntryBoxes
-from uplift.lookup import Cube
+from uplift.lattice.entry_boxes import EntryBoxes
+from uplift.lookup.cube import Cube
 from uplift.pipeline.build import build
 from uplift.pipeline.options import CUSTOM, Options, recorded_options
 

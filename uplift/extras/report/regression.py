@@ -8,16 +8,16 @@ from typing import Literal
 
 import numpy as np
 
-from uplift.colorimetry import solid
+from uplift.colorimetry.object_colours import solid
 from uplift.colorimetry.observer import light
 from uplift.common.arrays import Array, Mask
 from uplift.common.errors import CubeFileError
-from uplift.cube import CubeData
+from uplift.cube.data import CubeData
 from uplift.extras.colour.light_sets import REGRESSION_LIGHTS
 from uplift.extras.report.diff import pair_entries
 from uplift.extras.report.measures import delta_e_under
-from uplift.lattice import Status
-from uplift.models import reflectance
+from uplift.lattice.point_table import Status
+from uplift.models.model import reflectance
 
 # Largest differences allowed between machines: at least thirty times the effect of
 # other instruction sets (docs/data/determinism.json). On one machine there

@@ -13,7 +13,8 @@ from typing import Any
 
 import numpy as np
 
-from uplift.colorimetry import Light, Sensor, rgb_to_lab
+from uplift.colorimetry.delta_e import rgb_to_lab
+from uplift.colorimetry.sensor import Light, Sensor
 from uplift.common.arrays import Array, Values, blocks, distances
 from uplift.common.errors import OptionError
 from uplift.common.machine import single_threaded_blas
@@ -28,9 +29,8 @@ from uplift.extras.texture.scene_colours import (
     bin_index,
     no_pixels,
 )
-from uplift.fit import posterior
-from uplift.fit.kriging import DEFAULT, Kernel
-from uplift.lookup import Cube
+from uplift.fit.kriging import DEFAULT, Kernel, posterior
+from uplift.lookup.cube import Cube
 from uplift.lookup.errors_under_lights import light_errors
 
 STEPS = (1, 2, 4, 8)

@@ -11,15 +11,16 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from uplift.colorimetry import Light
 from uplift.colorimetry.illuminants import Illuminant
+from uplift.colorimetry.sensor import Light
 from uplift.common.arrays import Array
 from uplift.common.errors import OptionError
 from uplift.extras.colour.light_sets import DESCRIPTIONS
-from uplift.extras.photographs import light_errors, photograph, prepare
-from uplift.extras.photographs.photograph import Photograph
+from uplift.extras.photographs.answers import prepare
+from uplift.extras.photographs.errors import light_errors
+from uplift.extras.photographs.photograph import Photograph, photograph
 from uplift.extras.texture.scene_colours import PixelSample
-from uplift.lookup import Cube
+from uplift.lookup.cube import Cube
 from uplift.lookup.errors_under_lights import LightErrors
 from uplift.lookup.errors_under_lights import light_errors as errors_of_cube
 

@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from uplift.colorimetry import Sensor
 from uplift.colorimetry.gamut import map_to_gamut
+from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Array, Floats, StrPath, Values
 from uplift.common.errors import OptionError, TextureError, UpliftWarning, unknown_name
 from uplift.common.text import pluralise
@@ -22,7 +22,7 @@ from uplift.extras.texture.channels import (
 )
 from uplift.extras.texture.colour_profile import SRGB_SPACE
 from uplift.extras.texture.image import Image, Part
-from uplift.lattice import NO_ROWS, OutsideBoxes
+from uplift.lattice.entry_boxes import NO_ROWS, OutsideBoxes
 
 ENCODINGS = ("auto", "linear", "encoded")
 """How the numbers of an image are interpreted; ``auto`` takes integers as encoded,

@@ -18,7 +18,7 @@ from uplift.extras.images import exr
 from uplift.extras.texture import colours, uplifter
 from uplift.extras.texture.channels import BRIGHTEST, ColourChannels
 from uplift.extras.texture.image import Part
-from uplift.lookup import as_wavelengths
+from uplift.lookup.blocks import as_wavelengths
 
 DEPTHS = ("float", "half")
 """Types of channels, the default first."""

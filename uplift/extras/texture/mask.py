@@ -22,13 +22,13 @@ from uplift.common.arrays import Floats, Mask, StrPath, Values
 from uplift.common.errors import ColourError, OptionError, TextureError
 from uplift.common.files import file_digest
 from uplift.common.text import pluralise
-from uplift.cube import common_sensor
+from uplift.cube.data import common_sensor
 from uplift.extras.texture.channels import colour_channels, coloured_parts
 from uplift.extras.texture.colours import Counts
 from uplift.extras.texture.image import Image, Part, open_image
 from uplift.extras.texture.uplifter import Converted, Converter, ConvertRows, Uplifter
-from uplift.lattice import OutsideBoxes
-from uplift.lookup import refine_to_rgb
+from uplift.lattice.entry_boxes import OutsideBoxes
+from uplift.lookup.refine import refine_to_rgb
 
 ToWeights = Callable[[Values], Floats]
 """From numbers (…, 3) of a mask to weights (…, n)."""

@@ -10,15 +10,16 @@ from typing import NamedTuple
 
 import numpy as np
 
-from uplift.atlas import read_atlas, resample
-from uplift.colorimetry import Sensor
+from uplift.atlas.resampling import resample
+from uplift.atlas.sources import read_atlas
 from uplift.colorimetry.illuminants import Illuminant
 from uplift.colorimetry.observer import light as find_light
+from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Array, Mask, Values
 from uplift.common.errors import OptionError, TextureError
 from uplift.common.text import pluralise
 from uplift.extras.colour.spaces import find_space
-from uplift.extras.photographs import Noise, Photograph, Photographs
+from uplift.extras.photographs.answers import Photographs
 from uplift.extras.photographs.chart import (
     COLUMNS,
     CORNERS_HINT,
@@ -37,11 +38,12 @@ from uplift.extras.photographs.fit import (
     estimate_noise,
     grey_balance,
 )
+from uplift.extras.photographs.photograph import Noise, Photograph
 from uplift.extras.texture.channels import ColourChannels, coloured_parts
 from uplift.extras.texture.colours import Decoder, linear_reader, make_decoder
 from uplift.extras.texture.image import Image, Part, open_image
 from uplift.extras.texture.uplifter import Sampler
-from uplift.lookup import Cube
+from uplift.lookup.cube import Cube
 
 SAMPLED_ROWS = 24
 """Rows of a band that is sampled for exposure and noise."""

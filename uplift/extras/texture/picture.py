@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from uplift.colorimetry import Sensor
+from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Floats, Mask, StrPath, Values
 from uplift.common.errors import UpliftWarning
 from uplift.extras.colour.spaces import ImageSpace

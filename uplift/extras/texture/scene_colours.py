@@ -10,8 +10,8 @@ from typing import Any
 
 import numpy as np
 
-from uplift.colorimetry import Sensor
 from uplift.colorimetry.gamut import check_method
+from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Array, Indices, Mask, StrPath
 from uplift.common.errors import OptionError, TextureError, warn
 from uplift.common.files import file_digest
@@ -25,7 +25,8 @@ from uplift.extras.texture.colours import (
     space_warnings,
 )
 from uplift.extras.texture.image import open_image
-from uplift.lattice import CORNERS, MARGIN, EntryBoxes, Lattice
+from uplift.lattice.entry_boxes import MARGIN, EntryBoxes
+from uplift.lattice.lattice import CORNERS, Lattice
 
 BLOCK_PIXELS = 1 << 16
 """Pixels decoded at a time."""

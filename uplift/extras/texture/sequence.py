@@ -33,7 +33,7 @@ from uplift.extras.texture.mask import prepare_masked
 from uplift.extras.texture.photographs import FurtherPictures
 from uplift.extras.texture.several_lights import prepare_several_lights
 from uplift.extras.texture.uplifter import Converter, PixelEncoding, Spectrum, prepare
-from uplift.lookup import load
+from uplift.lookup.cube import load
 
 DASK_TIMEOUT = "10s"
 DASK_CLOSE_SECONDS = 2

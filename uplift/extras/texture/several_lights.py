@@ -10,14 +10,16 @@ from pathlib import Path
 import numpy as np
 
 from uplift import models
-from uplift.colorimetry import Light
 from uplift.colorimetry.illuminants import Illuminant
 from uplift.colorimetry.observer import lights as find_lights
+from uplift.colorimetry.sensor import Light
 from uplift.common.arrays import Array, Floats, Mask
 from uplift.common.errors import OptionError
 from uplift.common.machine import single_threaded_blas
-from uplift.extras.photographs import Noise, Photographs, light_errors, photograph
-from uplift.extras.photographs import prepare as prepare_photographs
+from uplift.extras.photographs.answers import Photographs
+from uplift.extras.photographs.answers import prepare as prepare_photographs
+from uplift.extras.photographs.errors import light_errors
+from uplift.extras.photographs.photograph import Noise, photograph
 from uplift.extras.texture.channels import coloured_parts
 from uplift.extras.texture.colours import Counts, make_decoder
 from uplift.extras.texture.image import Image, Part, open_image
@@ -39,8 +41,9 @@ from uplift.extras.texture.uplifter import (
     Spectrum,
     Uplifter,
 )
-from uplift.lookup import blockwise, refine_to_rgb
+from uplift.lookup.blocks import blockwise
 from uplift.lookup.errors_under_lights import LightErrors
+from uplift.lookup.refine import refine_to_rgb
 from uplift.models.moments import moment_matrix
 
 NO_NOISE = (0.0, 0.0)

@@ -15,10 +15,10 @@ from typing import Any, ClassVar
 import numpy as np
 
 from uplift import models
-from uplift.colorimetry import Sensor
 from uplift.colorimetry.gamut import check_method, map_to_gamut
 from uplift.colorimetry.illuminants import Illuminant, Lamp
 from uplift.colorimetry.observer import lights as find_lights
+from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Array, Floats, Indices, Values
 from uplift.common.errors import OptionError
 from uplift.extras.colour.spaces import ImageSpace, find_space
@@ -26,18 +26,17 @@ from uplift.extras.images import exr
 from uplift.extras.texture.channels import ColourChannels
 from uplift.extras.texture.colours import Counts, Decoder, check_encoding, make_decoder
 from uplift.extras.texture.image import Image, Part
-from uplift.lattice import BoxHits, OutsideBoxes
-from uplift.lookup import (
-    Cube,
-    as_wavelengths,
-    blockwise,
+from uplift.lattice.entry_boxes import BoxHits, OutsideBoxes
+from uplift.lookup.blocks import as_wavelengths, blockwise
+from uplift.lookup.cube import Cube
+from uplift.lookup.errors_under_lights import LightErrors, light_errors
+from uplift.lookup.interpolate import (
     extended_multipliers,
-    refine_to_rgb,
+    is_inexact,
     refined_multipliers,
 )
-from uplift.lookup.errors_under_lights import LightErrors, light_errors
-from uplift.lookup.interpolate import is_inexact
-from uplift.models import Model
+from uplift.lookup.refine import refine_to_rgb
+from uplift.models.model import Model
 
 Sampler = Callable[[Floats], Floats]
 """From linear RGB (…, 3) in [0, 1] to numbers (…, N)."""

@@ -6,9 +6,9 @@ import numpy as np
 
 from uplift.common.arrays import Array, Indices, blocks
 from uplift.common.progress import ProgressCallback
-from uplift.fit import Nodes, Problem
 from uplift.fit.growth import BLOCK_POINTS, MAX_PASSES, Expected, Growth, retry
-from uplift.lattice import weighted_sum
+from uplift.fit.problem import Nodes, Problem
+from uplift.lattice.lattice import weighted_sum
 
 MIN_CELLS = 4
 """Cells along each axis of the coarsest lattice, at least; all of them in smaller

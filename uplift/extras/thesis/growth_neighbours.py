@@ -9,9 +9,9 @@ import numpy as np
 
 from uplift.common.arrays import Array, Indices, Mask
 from uplift.common.progress import ProgressCallback
-from uplift.fit import Nodes, Problem
 from uplift.fit.growth import Expected, Growth
-from uplift.lattice import NOT_FITTED
+from uplift.fit.problem import Nodes, Problem
+from uplift.lattice.point_table import NOT_FITTED
 
 NUDGES = (0.5, -0.5)
 """Changes of the linear part that are tried, in turn, where the solver fails."""

@@ -23,7 +23,7 @@ from uplift.common.arrays import Array
 from uplift.common.errors import OptionError
 from uplift.common.text import format_value
 from uplift.fit.solver import NO_TAGS, BatchSolver, Options, Stepped
-from uplift.models import ForwardMap
+from uplift.models.minimum_norm import ForwardMap
 
 CLOSENESS = 1e-5
 """Weight of the difference from the prior, in linear RGB per unit of the metric; every

@@ -9,7 +9,7 @@ from dataclasses import fields, replace
 
 import numpy as np
 
-from uplift.colorimetry import delta_e_rgb
+from uplift.colorimetry.delta_e import delta_e_rgb
 from uplift.common.arrays import Array, Values
 from uplift.common.progress import Progress, ProgressCallback, ignore_progress
 from uplift.common.text import pluralise

@@ -5,8 +5,8 @@ from collections.abc import Sequence
 from fnmatch import fnmatchcase
 from typing import Any
 
-from uplift.atlas import read_atlas
-from uplift.colorimetry import Light
+from uplift.atlas.sources import read_atlas
+from uplift.colorimetry.sensor import Light
 from uplift.common.errors import OptionError
 from uplift.extras.colour.srgb import decode
 from uplift.lab.chart.task import make_task

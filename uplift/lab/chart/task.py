@@ -8,7 +8,7 @@ from itertools import product
 
 import numpy as np
 
-from uplift.atlas import Atlas, merge
+from uplift.atlas.atlas import Atlas, merge
 from uplift.colorimetry import observer
 from uplift.common.arrays import Array
 from uplift.common.errors import AtlasError

@@ -12,8 +12,9 @@ from operator import itemgetter
 
 import numpy as np
 
-from uplift.atlas import Atlas, Entry, merge, on_grid
-from uplift.colorimetry import delta_e_2000
+from uplift.atlas.atlas import Atlas, Entry, merge
+from uplift.atlas.resampling import on_grid
+from uplift.colorimetry.delta_e import delta_e_2000
 from uplift.colorimetry.illuminants import Illuminant
 from uplift.colorimetry.sensor import SLACK
 from uplift.common.arrays import Array

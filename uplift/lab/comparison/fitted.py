@@ -17,9 +17,10 @@ from uplift.extras.scene.representations import (
 )
 from uplift.extras.scene.representations.models import tabulated
 from uplift.extras.scene.wavelengths import choose, make_setup
-from uplift.fit import Problem, fit_entries
+from uplift.fit.entries import fit_entries
+from uplift.fit.problem import Problem
 from uplift.lab.comparison.compare import Scene
-from uplift.models import Moments
+from uplift.models.moments import Moments
 
 WAVELENGTHS = (5, 7, 9, 12)
 FACTORS = (5, 7, 9)

@@ -8,7 +8,7 @@ from itertools import product
 
 import numpy as np
 
-from uplift.colorimetry import delta_e_2000
+from uplift.colorimetry.delta_e import delta_e_2000
 from uplift.common.arrays import Array
 from uplift.common.progress import ProgressCallback, ignore_progress, reported
 from uplift.extras.scene.representations import filters, samples

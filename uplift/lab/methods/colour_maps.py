@@ -14,7 +14,8 @@ from itertools import combinations_with_replacement
 
 import numpy as np
 
-from uplift.colorimetry import Light, delta_e_2000_weights, lab, lab_jacobian
+from uplift.colorimetry.delta_e import delta_e_2000_weights, lab, lab_jacobian
+from uplift.colorimetry.sensor import Light
 from uplift.common.arrays import Array
 from uplift.lab.method import PreparedMap
 from uplift.lab.runner import Prepare, Task

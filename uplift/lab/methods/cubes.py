@@ -18,11 +18,11 @@ from typing import Any
 
 import numpy as np
 
-from uplift.atlas import Atlas
-from uplift.colorimetry import Light
+from uplift.atlas.atlas import Atlas
+from uplift.colorimetry.sensor import Light
 from uplift.common.arrays import Array, Values
-from uplift.cube import CubeData
-from uplift.extras.export import write_program
+from uplift.cube.data import CubeData
+from uplift.extras.export.program import write_program
 from uplift.lab.method import (
     Method,
     NotInstalledError,
@@ -34,8 +34,9 @@ from uplift.lab.method import (
 )
 from uplift.lab.runner import Prepare, Task
 from uplift.lab.timing import stopwatch
-from uplift.lookup import MODES, Cube, load
-from uplift.models import Moments
+from uplift.lookup.cube import Cube, load
+from uplift.lookup.interpolate import MODES
+from uplift.models.moments import Moments
 from uplift.pipeline.build import build
 
 KEPT = 4

@@ -9,14 +9,10 @@ from itertools import product
 import numpy as np
 from scipy.spatial.distance import cdist
 
-from uplift.colorimetry import (
-    Sensor,
-    delta_e_spectra,
-    in_unit_cube,
-    observer,
-    rgb_to_lab,
-)
+from uplift.colorimetry import observer
+from uplift.colorimetry.delta_e import delta_e_spectra, rgb_to_lab
 from uplift.colorimetry.illuminants import SCENE_LIGHTS
+from uplift.colorimetry.sensor import Sensor, in_unit_cube
 from uplift.common.arrays import Array
 from uplift.lab.method import (
     Method,
@@ -27,7 +23,8 @@ from uplift.lab.method import (
 from uplift.lab.runner import KNOWN, Known, Task
 from uplift.lab.timing import stopwatch
 from uplift.lookup.refine import FIRST_DAMPING, MAX_STEPS
-from uplift.models import Moments, forward_map, minimum_norm_step
+from uplift.models.minimum_norm import forward_map, minimum_norm_step
+from uplift.models.moments import Moments
 
 BANDWIDTHS = (7.0, 10.0, 14.0, 20.0, 28.0, 40.0, 80.0, 1e4)
 """Standard deviations of the Gaussian weights, in CIE L*a*b*; the last one weighs all

@@ -16,7 +16,8 @@ import numpy as np
 from scipy.optimize import nnls
 from scipy.spatial.distance import cdist
 
-from uplift.colorimetry import Light, Sensor, lab
+from uplift.colorimetry.delta_e import lab
+from uplift.colorimetry.sensor import Light, Sensor
 from uplift.common.arrays import Array, Indices
 from uplift.lab.method import Method, PreparedMethod, interpolated, ours
 from uplift.lab.methods.local_linear import LOWEST, with_least_change

@@ -19,7 +19,7 @@ from typing import Any
 
 import numpy as np
 
-from uplift.colorimetry import Sensor
+from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Array
 from uplift.lab.method import (
     Method,

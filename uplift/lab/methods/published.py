@@ -19,8 +19,8 @@ from functools import cache, partial
 
 import numpy as np
 
-from uplift.colorimetry import Sensor
 from uplift.colorimetry.observer import END, START, STEP
+from uplift.colorimetry.sensor import Sensor
 from uplift.colorimetry.tables import aligned, look_up
 from uplift.common.arrays import Array, Values
 from uplift.common.colour_science import colour_science

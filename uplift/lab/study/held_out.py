@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from functools import partial
 from typing import Any
 
-from uplift.atlas import Atlas
+from uplift.atlas.atlas import Atlas
 from uplift.colorimetry import observer
 from uplift.colorimetry.illuminants import ERROR_ILLUMINANT
 from uplift.common.errors import AtlasError, UpliftWarning

@@ -13,8 +13,10 @@ from itertools import product, starmap
 import numpy as np
 from numpy.typing import ArrayLike
 
-from uplift.atlas import Atlas, merge, on_grid
-from uplift.colorimetry import delta_e_1976, lab, observer
+from uplift.atlas.atlas import Atlas, merge
+from uplift.atlas.resampling import on_grid
+from uplift.colorimetry import observer
+from uplift.colorimetry.delta_e import delta_e_1976, lab
 from uplift.common.arrays import Array, Complex
 from uplift.common.errors import AtlasError, OptionError
 from uplift.common.progress import ProgressCallback, ignore_progress, reported
@@ -22,7 +24,8 @@ from uplift.extras.colour.light_sets import REPORT_LIGHTS
 from uplift.extras.report.measures import delta_e_under, rms_difference
 from uplift.extras.scene.representations import samples
 from uplift.lab.runner import Row, named_lights
-from uplift.models import Moments, duality
+from uplift.models import duality
+from uplift.models.moments import Moments
 
 
 @dataclass(frozen=True)

@@ -8,17 +8,20 @@ from functools import partial
 import numpy as np
 from scipy.spatial.distance import cdist
 
-from uplift.atlas import HIGHEST, LOWEST, Atlas, Entry
-from uplift.colorimetry import Light, delta_e_spectra, observer, rgb_to_lab
+from uplift.atlas.atlas import HIGHEST, LOWEST, Atlas, Entry
+from uplift.colorimetry import observer
+from uplift.colorimetry.delta_e import delta_e_spectra, rgb_to_lab
+from uplift.colorimetry.sensor import Light
 from uplift.common.arrays import Array
 from uplift.common.errors import OptionError, UpliftWarning
 from uplift.common.progress import ProgressCallback, ignore_progress, reported
-from uplift.cube import CubeData
+from uplift.cube.data import CubeData
 from uplift.extras.colour.light_sets import NARROW_BAND_LIGHT
 from uplift.extras.report.measures import delta_e_under, rms_difference
 from uplift.lab.runner import Row
-from uplift.lookup import MODES, Cube
-from uplift.models import reflectance
+from uplift.lookup.cube import Cube
+from uplift.lookup.interpolate import MODES
+from uplift.models.model import reflectance
 from uplift.pipeline.build import build
 from uplift.pipeline.options import recorded_options
 

@@ -15,14 +15,15 @@ from typing import Any
 
 import numpy as np
 
-from uplift.atlas import LOWEST, Atlas, Entry
-from uplift.colorimetry import observer, solid
+from uplift.atlas.atlas import LOWEST, Atlas, Entry
+from uplift.colorimetry import observer
+from uplift.colorimetry.object_colours import solid
 from uplift.common.errors import UpliftWarning, unknown_name
 from uplift.common.progress import ProgressCallback, ignore_progress, reported
 from uplift.lab.runner import Row
 from uplift.lab.timing import stopwatch
-from uplift.lattice import Status
-from uplift.models import Sigmoid
+from uplift.lattice.point_table import Status
+from uplift.models.sigmoid import Sigmoid
 from uplift.pipeline.build import build
 from uplift.pipeline.options import ModelName
 

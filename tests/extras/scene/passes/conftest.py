@@ -2,13 +2,10 @@
 
 import pytest
 
-from uplift.extras.scene.passes import (
-    Bands,
-    Materials,
-    Passes,
-    fit_bands,
-    library_materials,
-)
+from uplift.extras.scene.passes.bands import Bands
+from uplift.extras.scene.passes.choice import fit_bands
+from uplift.extras.scene.passes.materials import Materials, library_materials
+from uplift.extras.scene.passes.passes import Passes
 
 LIGHTS = ("D65", "A", "FL11")
 SIX = Bands((448.0, 498.0, 543.0, 581.0, 610.0, 652.0), 10.0)

@@ -12,11 +12,14 @@ import pytest
 from tests.browsing import check_page, shared_tab
 from tests.conftest import MACBETH
 from tests.helpers import raises
-from uplift.atlas import on_grid, read_atlas
-from uplift.colorimetry import delta_e_2000, lab, observer
+from uplift.atlas.resampling import on_grid
+from uplift.atlas.sources import read_atlas
+from uplift.colorimetry import observer
+from uplift.colorimetry.delta_e import delta_e_2000, lab
 from uplift.common.errors import OptionError
-from uplift.extras.scene.passes import PRESETS, fit_bands
 from uplift.extras.scene.passes.browser_page import page
+from uplift.extras.scene.passes.choice import fit_bands
+from uplift.extras.scene.passes.presets import PRESETS
 
 SIZE = 64
 LIGHTS = ("D65", "FL2", "HP1")

@@ -8,21 +8,18 @@ from numpy.testing import assert_allclose
 
 from tests.extras.scene.passes.conftest import LIGHTS, SIX
 from tests.helpers import raises
-from uplift.colorimetry import delta_e_2000, lab, observer
+from uplift.colorimetry import observer
+from uplift.colorimetry.delta_e import delta_e_2000, lab
 from uplift.common.errors import OptionError, UnknownNameError
-from uplift.extras.scene.passes import (
-    PRESETS,
-    Bands,
-    Materials,
-    choose,
-    fit_bands,
-    scaled_power,
-)
+from uplift.extras.scene.passes.bands import Bands
+from uplift.extras.scene.passes.choice import choose, fit_bands
 from uplift.extras.scene.passes.decoding import Grams
 from uplift.extras.scene.passes.light_paths import draw_paths
-from uplift.extras.scene.passes.materials import scene_materials
+from uplift.extras.scene.passes.materials import Materials, scene_materials
+from uplift.extras.scene.passes.passes import scaled_power
+from uplift.extras.scene.passes.presets import PRESETS
 from uplift.extras.scene.passes.search import Search
-from uplift.lookup import load
+from uplift.lookup.cube import load
 
 AIMS = {2: 0.6, 3: 0.25, 4: 0.12}
 """Mean ΔE00 by passes, with one decoding for six lights."""
@@ -221,7 +218,7 @@ def test_halves_share_no_material(library):
 
 
 def test_few_materials_are_refused():
-    from uplift.atlas import Atlas, Entry
+    from uplift.atlas.atlas import Atlas, Entry
 
     entries = [
         Entry(str(row), np.array([400.0, 500, 700]), np.array([0.1, 0.2, 0.3]))

@@ -8,7 +8,7 @@ from numpy.testing import assert_allclose
 
 from tests.helpers import raises
 from uplift.common.errors import PassesError
-from uplift.extras.scene.passes import (
+from uplift.extras.scene.passes.file import (
     passes_digest,
     read_passes,
     to_toml,

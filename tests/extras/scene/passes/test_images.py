@@ -12,7 +12,8 @@ from numpy.testing import assert_allclose
 import uplift
 from tests.extras.scene.passes.conftest import SIX
 from tests.helpers import raises
-from uplift.colorimetry import delta_e_2000, lab, observer
+from uplift.colorimetry import observer
+from uplift.colorimetry.delta_e import delta_e_2000, lab
 from uplift.common.errors import (
     OptionError,
     OutputError,

@@ -11,7 +11,7 @@ import pytest
 from uplift_cli.main import main
 
 from tests.cli.conftest import home, refuse, run, shown  # noqa: F401
-from uplift.cube import read
+from uplift.cube.file import read
 from uplift.extras.scene.plan.candidates import PIXELS
 from uplift.extras.scene.plan.files import cube_name
 from uplift.extras.scene.plan.summary import commands

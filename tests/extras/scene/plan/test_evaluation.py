@@ -8,7 +8,8 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 from tests.extras.texture.conftest import planes, write_exr
 from tests.helpers import raises
-from uplift.colorimetry import delta_e_spectra, observer
+from uplift.colorimetry import observer
+from uplift.colorimetry.delta_e import delta_e_spectra
 from uplift.common.errors import TextureError, UpliftWarning
 from uplift.common.progress import ignore_progress
 from uplift.extras.scene.plan.evaluation import WORST_DELTA_E, EvaluationSet, renderings

@@ -4,7 +4,7 @@ import pytest
 
 from tests.helpers import raises
 from uplift.common.errors import PlanFileError
-from uplift.extras.scene.plan import read_scene_file
+from uplift.extras.scene.plan.files import read_scene_file
 
 
 @pytest.fixture

@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from uplift.atlas import SLACK, VISIBLE
+from uplift.atlas.atlas import SLACK, VISIBLE
 from uplift.common.arrays import Array
 from uplift.common.text import parse_float
 from uplift.extras.files.csv import parse_decimal

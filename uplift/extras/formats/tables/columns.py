@@ -9,7 +9,7 @@ from itertools import chain
 
 import numpy as np
 
-from uplift.atlas import SkippedEntry
+from uplift.atlas.atlas import SkippedEntry
 from uplift.common.arrays import Array
 from uplift.extras.formats.measurements import not_used_note
 from uplift.extras.formats.statements import (

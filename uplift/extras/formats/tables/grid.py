@@ -6,7 +6,8 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
 
-from uplift.atlas import SkippedEntry, SourceLocation
+from uplift.atlas.atlas import SkippedEntry
+from uplift.atlas.document import SourceLocation
 from uplift.common.arrays import Array
 from uplift.extras.formats.quantities import TABLE
 from uplift.extras.formats.statements import remark_unit

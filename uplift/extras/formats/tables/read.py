@@ -12,7 +12,7 @@ from itertools import chain
 
 import numpy as np
 
-from uplift.atlas import SourceLocation, truncate
+from uplift.atlas.document import SourceLocation, truncate
 from uplift.common.arrays import Array
 from uplift.common.errors import AtlasError
 from uplift.common.text import pluralise

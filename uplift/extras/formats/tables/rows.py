@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from uplift.atlas import truncate
+from uplift.atlas.document import truncate
 from uplift.common.arrays import Array
 from uplift.common.text import pluralise
 from uplift.extras.formats.measurements import not_used_note

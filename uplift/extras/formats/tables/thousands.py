@@ -5,7 +5,7 @@ spreadsheets write in quotes.
 import re
 from collections.abc import Sequence
 
-from uplift.atlas import HIGHEST
+from uplift.atlas.atlas import HIGHEST
 from uplift.extras.formats.statements import PERCENT, TEN_THOUSAND, Scale
 
 GROUPED = re.compile(r"[+-]?[1-9]\d{0,2}(?:,\d{3})+")

@@ -11,12 +11,12 @@ from functools import cached_property
 
 import numpy as np
 
-from uplift.colorimetry import (
+from uplift.colorimetry import observer
+from uplift.colorimetry.delta_e import (
     delta_e_2000,
     delta_e_2000_form,
     lab,
     lab_jacobian,
-    observer,
 )
 from uplift.common.arrays import Array, Indices
 

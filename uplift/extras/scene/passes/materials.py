@@ -6,15 +6,16 @@ from typing import Any
 
 import numpy as np
 
-from uplift.atlas import Atlas, on_grid
+from uplift.atlas.atlas import Atlas
+from uplift.atlas.resampling import on_grid
 from uplift.colorimetry import observer
 from uplift.common.arrays import Array
 from uplift.common.errors import OptionError
-from uplift.cube import digest
+from uplift.cube.file import digest
 from uplift.extras.scene.advice import colour_areas
 from uplift.extras.texture.scene_colours import Images
-from uplift.fit import shipped_library
-from uplift.lookup import Cube
+from uplift.fit.families import shipped_library
+from uplift.lookup.cube import Cube
 
 SEED = 5
 """Seed of the halves."""

@@ -9,7 +9,7 @@ from uplift.extras.scene.passes.light_images import prepare_light_pass
 from uplift.extras.scene.passes.textures import prepare_pass
 from uplift.extras.texture.sequence import TextureSettings
 from uplift.extras.texture.uplifter import Converter
-from uplift.lookup import load
+from uplift.lookup.cube import load
 
 
 @dataclass(frozen=True)

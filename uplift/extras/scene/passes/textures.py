@@ -13,7 +13,7 @@ from uplift.colorimetry import observer
 from uplift.colorimetry.gamut import check_method
 from uplift.common.arrays import Floats
 from uplift.common.errors import OptionError, PassesError
-from uplift.cube import digest
+from uplift.cube.file import digest
 from uplift.extras.colour.spaces import find_space
 from uplift.extras.images import exr
 from uplift.extras.scene.passes.bands import CHANNELS
@@ -26,7 +26,7 @@ from uplift.extras.texture.uplifter import (
     Sampler,
     resolve_depth,
 )
-from uplift.lookup import Cube
+from uplift.lookup.cube import Cube
 from uplift.lookup.node_table import prepare_products
 
 ATTRIBUTE = "uplift.passes"

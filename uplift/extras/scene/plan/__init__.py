@@ -10,7 +10,6 @@ the method.
     result.chosen.name, result.confirmed.quantile, result.chosen.cube
 """
 
-from uplift.extras.scene.plan.files import SceneFile, read_scene_file
-from uplift.extras.scene.plan.planning import Plan, plan
+import lazy_loader
 
-__all__ = ["Plan", "SceneFile", "plan", "read_scene_file"]
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

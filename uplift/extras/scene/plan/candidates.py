@@ -22,9 +22,11 @@ from uplift.extras.scene.plan.evaluation import (
     dominated,
 )
 from uplift.extras.scene.plan.files import CostName, Minimised
-from uplift.lattice import AXES
-from uplift.lookup import Cube, refined_multipliers
-from uplift.models import Sigmoid, evaluate, reflectance
+from uplift.lattice.lattice import AXES
+from uplift.lookup.cube import Cube
+from uplift.lookup.interpolate import refined_multipliers
+from uplift.models.model import evaluate, reflectance
+from uplift.models.sigmoid import Sigmoid
 from uplift.pipeline.options import Options
 
 MODELS: Mapping[str, tuple[int, ...]] = {

@@ -9,7 +9,7 @@ from functools import partial
 
 import numpy as np
 
-from uplift.colorimetry import delta_e_2000, delta_e_2000_weights, lab_jacobian
+from uplift.colorimetry.delta_e import delta_e_2000, delta_e_2000_weights, lab_jacobian
 from uplift.colorimetry.observer import DEFAULT_OBSERVER, illuminant_spd
 from uplift.common.arrays import Array, Indices, Mask
 from uplift.common.errors import OptionError
@@ -21,7 +21,7 @@ from uplift.extras.scene.representations import (
 )
 from uplift.extras.scene.wavelengths import Sampling, choose
 from uplift.extras.scene.wavelengths.sampling import RenderSetup, interp_curves
-from uplift.lookup import Cube
+from uplift.lookup.cube import Cube
 
 WORST_DELTA_E = 100.0
 """ΔE00 of colours that are not finite: the difference between black and white."""

@@ -10,13 +10,14 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, ConfigDict, Field
 
-from uplift.colorimetry import Sensor, observer
+from uplift.colorimetry import observer
 from uplift.colorimetry.illuminants import (
     DEFAULT_ILLUMINANT,
     SCENE_LIGHTS,
     Illuminant,
     Lamp,
 )
+from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import StrPath
 from uplift.common.errors import (
     OptionError,
@@ -40,7 +41,7 @@ from uplift.extras.files.spec import (
 )
 from uplift.extras.texture.colours import check_encoding
 from uplift.extras.texture.scene_colours import Images
-from uplift.lookup import Cube
+from uplift.lookup.cube import Cube
 from uplift.pipeline.build import build
 from uplift.pipeline.options import Options, recorded_options
 from uplift.pipeline.stages import problem_of

@@ -9,8 +9,9 @@ import numpy as np
 
 from uplift.colorimetry.illuminants import Illuminant
 from uplift.common.arrays import Array
-from uplift.extras.scene import passes
-from uplift.extras.scene.passes.materials import halves
+from uplift.extras.scene.passes.choice import fit_bands, path_errors
+from uplift.extras.scene.passes.materials import Materials, halves, library_materials
+from uplift.extras.scene.passes.presets import PRESETS
 
 MIN_MATERIALS = 8
 """Fewest spectra that are divided into halves; of fewer, all are in both."""
@@ -49,17 +50,17 @@ def advise_passes(
     scene: passes chosen for its materials err less.
     """
     distinct = np.unique(np.clip(reflectances, 0, 1), axis=0)
-    known = passes.library_materials().training
+    known = library_materials().training
     if len(distinct) < MIN_MATERIALS:
         judging = distinct
     else:
         first, judging = halves(distinct)
         known = np.concatenate([known, first])
-    materials = passes.Materials(known, judging)
+    materials = Materials(known, judging)
     advice = PassesAdvice(0, np.inf, within=False)
-    for count, bands in passes.PRESETS.items():
-        fitted = passes.fit_bands(bands, materials, lights)
-        errors = passes.path_errors(fitted, materials, lights)
+    for count, bands in PRESETS.items():
+        fitted = fit_bands(bands, materials, lights)
+        errors = path_errors(fitted, materials, lights)
         error = float(np.quantile(errors, quantile, axis=1).max())
         advice = PassesAdvice(count, error, error <= tolerance)
         if advice.within:

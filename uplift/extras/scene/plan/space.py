@@ -15,11 +15,12 @@ from typing import Any
 
 import numpy as np
 
-from uplift.atlas import Atlas, read_atlas
+from uplift.atlas.atlas import Atlas
+from uplift.atlas.sources import read_atlas
 from uplift.common.arrays import Array
 from uplift.common.errors import UpliftWarning
 from uplift.common.progress import Progress, ProgressCallback
-from uplift.cube import contents
+from uplift.cube.file import contents
 from uplift.cube.schema import POINTS
 from uplift.extras import texture
 from uplift.extras.scene.plan.candidates import (
@@ -47,10 +48,11 @@ from uplift.extras.texture.scene_colours import (
     cells_touched,
     sample_colours,
 )
-from uplift.fit import Problem
-from uplift.lattice import Lattice, axis_nodes
-from uplift.lookup import Cube
-from uplift.models import Model, Sigmoid
+from uplift.fit.problem import Problem
+from uplift.lattice.lattice import Lattice, axis_nodes
+from uplift.lookup.cube import Cube
+from uplift.models.model import Model
+from uplift.models.sigmoid import Sigmoid
 from uplift.pipeline.entries import split_by_gamut
 from uplift.pipeline.options import Options
 from uplift.pipeline.stages import Learnt, build_stages, learn, problem_of

@@ -13,11 +13,13 @@ from uplift.common.errors import OptionError
 from uplift.extras.scene.representations import samples
 from uplift.extras.scene.representations.composite import spike_xyz
 from uplift.extras.scene.representations.samples import Representation
-from uplift.fit import Marquardt
+from uplift.fit.entries import Marquardt
 from uplift.fit.solver import iterate_rows
-from uplift.models import Model, Moments, Sigmoid, evaluate, reflectance
 from uplift.models.arithmetic import blocked_matmul
 from uplift.models.duality import cosine_basis
+from uplift.models.model import Model, evaluate, reflectance
+from uplift.models.moments import Moments
+from uplift.models.sigmoid import Sigmoid
 
 SHAPE_WEIGHT = 1e-4
 """Weight of the residual of a sigmoid at one wavelength relative to that of the colour.

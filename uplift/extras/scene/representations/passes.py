@@ -60,8 +60,11 @@ def _library_passes(count: int) -> tuple[Array, Array, Array]:
     to XYZ.
     """
     # The passes import images, which other representations do not need.
-    from uplift.extras.scene import passes
+    from uplift.extras.scene.passes.bands import CHANNELS
+    from uplift.extras.scene.passes.choice import fit_bands
+    from uplift.extras.scene.passes.materials import library_materials
+    from uplift.extras.scene.passes.presets import PRESETS
 
-    bands = passes.PRESETS[count // passes.CHANNELS]
-    fitted = passes.fit_bands(bands, passes.library_materials(), LIGHTS)
+    bands = PRESETS[count // CHANNELS]
+    fitted = fit_bands(bands, library_materials(), LIGHTS)
     return bands.weights, fitted.light_projection, fitted.to_xyz

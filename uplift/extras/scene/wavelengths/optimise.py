@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.optimize import least_squares
 
-from uplift.colorimetry import delta_e_2000_form, lab_jacobian
+from uplift.colorimetry.delta_e import delta_e_2000_form, lab_jacobian
 from uplift.common.arrays import Array, as_nm
 from uplift.common.errors import OptionError
 from uplift.common.machine import single_threaded_blas

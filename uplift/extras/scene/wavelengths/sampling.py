@@ -11,9 +11,11 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.interpolate import CubicSpline
 
-from uplift.colorimetry import Sensor, delta_e_2000, lab, observer
+from uplift.colorimetry import observer
+from uplift.colorimetry.delta_e import delta_e_2000, lab
 from uplift.colorimetry.illuminants import Illuminant
 from uplift.colorimetry.observer import DEFAULT_OBSERVER
+from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Array, as_array, as_nm
 from uplift.common.errors import OptionError
 

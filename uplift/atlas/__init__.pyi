@@ -1,0 +1,17 @@
+from .atlas import Atlas as Atlas
+from .atlas import Entry as Entry
+from .atlas import Header as Header
+from .atlas import SkippedEntry as SkippedEntry
+from .atlas import Source as Source
+from .atlas import merge as merge
+from .formats import Format as Format
+from .formats import known_formats as known_formats
+from .resampling import Clip as Clip
+from .resampling import Resampled as Resampled
+from .resampling import on_grid as on_grid
+from .resampling import resample as resample
+from .sources import ShippedAtlas as ShippedAtlas
+from .sources import from_distributions as from_distributions
+from .sources import read_atlas as read_atlas
+from .sources import shipped_atlases as shipped_atlases
+from .sources import write_atlas as write_atlas
