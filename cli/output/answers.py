@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from .console import columns, has_colours, print_fields, say
+from .console import has_colours, print_fields, say, window_width
 
 if TYPE_CHECKING:
     from uplift.common.arrays import Array
@@ -43,7 +43,7 @@ def print_spectrum(
     step = 1 if complete else -(-len(wavelengths) // MAX_CELLS)
     pairs = zip(wavelengths[::step], values[::step], strict=True)
     cells = [f"{wavelength:>6g} nm {value:8.5f}" for wavelength, value in pairs]
-    height = -(-len(cells) // max(1, (columns() + 2) // CELL_WIDTH))
+    height = -(-len(cells) // max(1, (window_width() + 2) // CELL_WIDTH))
     for line in range(height):
         say("  ".join(cells[line::height]))
 
