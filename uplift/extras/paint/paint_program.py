@@ -19,7 +19,7 @@ from uplift.common.arrays import Array
 from uplift.common.errors import unknown_name
 from uplift.common.files import write_text
 from uplift.common.version import version
-from uplift.extras.export.program import comment, identifier, literal
+from uplift.extras.export.source import comment, identifier, literal
 from uplift.extras.paint.paints import Paints
 from uplift.extras.papers.wavelengths.choice import choose
 from uplift.extras.papers.wavelengths.sampling import make_setup
