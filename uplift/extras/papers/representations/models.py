@@ -13,10 +13,9 @@ from uplift.common.errors import OptionError
 from uplift.extras.papers.representations import samples
 from uplift.extras.papers.representations.composite import spike_xyz
 from uplift.extras.papers.representations.samples import Representation
-from uplift.fit.entries import Marquardt
-from uplift.fit.solver import iterate_rows
 from uplift.models.arithmetic import blocked_matmul
 from uplift.models.duality import cosine_basis
+from uplift.models.least_squares import least_squares
 from uplift.models.model import Model, evaluate, reflectance
 from uplift.models.moments import Moments
 from uplift.models.sigmoid import Sigmoid
@@ -99,20 +98,20 @@ def fit_sigmoids(spectra: Array) -> Array:
         [light.xyz / light.white[:, None], SHAPE_WEIGHT * np.eye(len(basis))]
     )
 
-    def residuals(coefficients: Array, rows: Indices) -> tuple[Array, None]:
-        return (
-            evaluate(model, coefficients, observer.grid()) - table[rows]
-        ) @ measurement.T, None
+    def residuals(coefficients: Array, rows: Indices) -> Array:
+        spectra = evaluate(model, coefficients, observer.grid())
+        return (spectra - table[rows]) @ measurement.T
 
-    def normal_equations(coefficients: Array, residuals: Array) -> tuple[Array, Array]:
+    def normal_equations(
+        coefficients: Array, residuals: Array, rows: Indices
+    ) -> tuple[Array, Array]:
         jacobian = measurement @ (
             model.derivative(coefficients @ basis.T)[:, :, None] * basis
         )
         return jacobian.mT @ jacobian, (jacobian.mT @ residuals[..., None])[..., 0]
 
     start = np.zeros((len(table), model.count))
-    options = {"normal_equations": normal_equations}
-    return iterate_rows(Marquardt(), residuals, start, lambda _: options, MAX_STEPS)
+    return least_squares(residuals, normal_equations, start, max_steps=MAX_STEPS)
 
 
 def principal_components(count: int, lights: Array, surfaces: Array) -> Array:
