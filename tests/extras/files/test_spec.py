@@ -126,14 +126,14 @@ def test_errors_name_the_key_path(read, text, start):
     assert caught.value.path.name == "spec.toml"
 
 
-def test_look_ups_keep_their_code_and_hints_may_be_given(read):
+def test_look_ups_keep_their_code_and_other_errors_get_the_hint(read):
     with raises(PaletteError, "unknown-name") as caught:
         read(f"{LAMP}\nlight = 'D66'")
     assert caught.value.problem == "lamps[0].light: unknown illuminant 'D66'"
     assert "D65" in caught.value.hint
-    for given, hint in (("", "lower it"), ("again", "again")):
+    for text, hint in (("max-value = 7", "lower it"), ("weight = -1", "again")):
         with raises(PaletteError, "invalid-file") as caught:
-            read("max-value = 7", hint=given)
+            read(text, hint="again")
         assert caught.value.hint == hint
 
 

@@ -120,7 +120,8 @@ def looking_up(*at: Key) -> Iterator[None]:
     try:
         yield
     except UpliftError as error:
-        raise problem(error.problem, error.hint, error.code, at=at) from error
+        text = error.describe("")  # with its own place, such as a line of a lamp
+        raise problem(text, error.hint, error.code, at=at) from error
 
 
 def resolves(look_up: Callable[[Any], object]) -> AfterValidator:
@@ -143,23 +144,30 @@ def check_shape(values: Array, shape: tuple[int, ...], *at: Key) -> None:
         raise problem(f"must be {expected} numbers, got {got}", at=at)
 
 
-def check_inside(name: Any) -> str:
+def check_inside(name: Any, *at: Key) -> str:
     """Check that a path lies within the folder of its specification, which may come
     from a stranger.
     """
     if not isinstance(name, str) or not 0 < len(name) <= MAX_PATH or "\0" in name:
         text = f"must be a path of 1 to {MAX_PATH} characters without null bytes"
-        raise problem(f"{text}, got {format_value(name)}", "name a file")
+        raise problem(f"{text}, got {format_value(name)}", "name a file", at=at)
     path = PureWindowsPath(name)  # of POSIX, too
     if path.anchor or ".." in path.parts:
         text = f"must lie in the folder of this file, got {format_value(name)}"
-        raise problem(text, "move the file there, or this file to a folder above both")
+        hint = "move the file there, or this file to a folder above both"
+        raise problem(text, hint, at=at)
     return name
+
+
+def spec_folder(info: ValidationInfo) -> SpecFolder:
+    """Return the folder of the specification that is validated."""
+    folder: SpecFolder = info.context or SpecFolder(Path())
+    return folder
 
 
 def file_in_folder(name: Any, info: ValidationInfo) -> Path:
     """Return the path of a file that is named in a specification."""
-    folder: SpecFolder = info.context or SpecFolder(Path())
+    folder = spec_folder(info)
     path = folder.path / check_inside(name)
     folder.opened.append(path)
     return path
@@ -196,13 +204,14 @@ def read_spec(
     error: type[UpliftError],
     *,
     kind: str = "TOML",
-    hint: str = "",
+    hint: str = HINT,
     given: Mapping[str, object] | None = None,
     folder: SpecFolder | None = None,
 ) -> Model:
     """Read a file of a ``kind`` of `PARSERS` as a model, or as a dataclass.
 
-    The first value that does not fit raises ``error``, with ``hint`` or its own.
+    The first value that does not fit raises ``error``, with ``hint`` unless it has its
+    own.
     ``given`` are values of fields that the file must not have. The ``folder``, by
     default that of the file, is the context of validators.
     """
@@ -258,7 +267,7 @@ def _located(
         f"{place}{separator}{text}" if place else text,
         code=context.get("code", INVALID),
         path=path,
-        hint=hint or context.get("hint", ""),
+        hint=context.get("hint") or hint,
     )
 
 
