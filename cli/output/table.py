@@ -30,8 +30,6 @@ Format = str | Callable[[Any], Any]
 """A format of numbers, or a function that returns the text of a cell."""
 GAP = 2
 """Characters between columns."""
-WRAPPED = 12
-"""Characters that a column of wrapped texts has at least."""
 UNKNOWN = "–"
 """Cell without a value."""
 
@@ -40,9 +38,10 @@ UNKNOWN = "–"
 class Table:
     """Rows with equal keys.
 
-    CSV has all keys. Text has the columns of ``headings``, by their keys and in this
-    order; numbers are right-aligned, and a list of numbers is one cell. A value has the
-    format of its key, or else ``digits`` if it is a float.
+    CSV has all keys; a list of numbers has a column for each letter of its key, such as
+    ``rgb``. Text has the columns of ``headings``, by their keys and in this order;
+    numbers are right-aligned, and a list of numbers is one cell. A value has the format
+    of its key, or else ``digits`` if it is a float.
     """
 
     rows: Iterable[Row]
@@ -53,15 +52,15 @@ class Table:
 
     def print_csv(self) -> None:
         """Print CSV, each row before the next one is computed."""
-        rows = iter(self.rows)
+        rows = map(_flat, self.rows)
         first = next(rows, None)
         if first is not None:
             cells = (list(row.values()) for row in chain([first], rows))
             print_csv(list(first), cells)
 
     def print_text(self) -> None:
-        """Print a table as wide as the window at most, unless its numbers are wider.
-        Texts are wrapped between words.
+        """Print a table as wide as the window at most, unless its numbers and words are
+        wider. Texts are wrapped between words.
         """
         from rich import box
         from rich.cells import cell_len
@@ -79,10 +78,11 @@ class Table:
             cells = [self._cell(key, value) for value in values]
             columns.append(cells)
             is_number = all(isinstance(value, Real | None) for value in values)
-            no_wrap = all(isinstance(value, Real | list | None) for value in values)
-            texts = [heading, *map(str, cells)]
-            width = max(map(cell_len, texts))
-            least += GAP + (width if no_wrap else min(width, WRAPPED))
+            is_list = any(isinstance(value, list) for value in values)
+            texts = list(map(str, cells))
+            words = list(chain.from_iterable(map(str.split, texts)))
+            no_wrap = is_list or words == texts
+            least += GAP + max(map(cell_len, [heading, *(texts if no_wrap else words)]))
             drawing.add_column(
                 printable(heading),
                 justify="right" if is_number else "left",
@@ -112,7 +112,24 @@ class Table:
             return " ".join(str(self._cell(key, part)) for part in value)
         if isinstance(value, float) or key in self.formats:
             return format(value, form)
-        return f"{value:,}" if isinstance(value, int) else printable(str(value))
+        if isinstance(value, int):
+            return f"{value:,}"
+        return printable(value) if isinstance(value, str) else value
+
+
+def _flat(row: Row) -> dict[str, Any]:
+    """Return a row whose values are the cells of CSV."""
+    cells: dict[str, Any] = {}
+    for key, value in row.items():
+        if isinstance(value, bool):
+            cells[key] = str(value).lower()
+        elif not isinstance(value, list):
+            cells[key] = value
+        elif all(isinstance(part, str) for part in value):
+            cells[key] = "; ".join(value)
+        else:
+            cells |= zip(key, value, strict=True)
+    return cells
 
 
 def swatch(code: str, text: str = "") -> Text:
