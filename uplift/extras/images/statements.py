@@ -101,7 +101,8 @@ def _png_chunks(path: Path) -> dict[bytes, bytes]:
 
 def _png_statements(chunks: Mapping[bytes, bytes]) -> dict[str, Any]:
     """Return ``cICP``, ``gAMA``, ``cHRM`` as x, y of red, green, blue and white,
-    ``sRGB`` and ``iCCP``. Numbers of another size than theirs are NaN, which no colours have.
+    ``sRGB`` and ``iCCP``. Numbers of another size than theirs are NaN, which no colours
+    have.
     """
     stated: dict[str, Any] = {
         name: True for name in ("sRGB", "iCCP") if name.encode() in chunks
