@@ -20,7 +20,7 @@ def command_reference() -> str:
     """Return the section of every group, command and subcommand in Markdown, in the
     order of the help.
     """
-    parts = []
+    parts = list[str]()
     with click.Context(main, info_name="uplift", **main.context_settings) as context:
         for name in COMMANDS:
             parts += _command(main.get_command(context, name), name, context)

@@ -13,7 +13,6 @@ from uplift.common.files import write_text
 
 from .. import also as further
 from .. import options
-from ..colours import is_colour
 from ..output.answers import as_lists, hex_code
 from ..output.bounds import bounds_cells, bounds_fields, bounds_table, print_colours
 from ..output.console import (
@@ -90,7 +89,9 @@ COLUMNS = (
     """,
 )
 @colour_options
-@further.also("COLOUR", is_colour, "Colour of the same thing under another light")
+@further.also(
+    "COLOUR", further.is_colour, "Colour of the same thing under another light"
+)
 @options.light("Illuminant under which the bounds are shown", "A FL11 HP1")
 @options.table_json_or_csv
 @options.plot("Plot the bounds")
