@@ -61,15 +61,15 @@ class Main(LazyGroup):
     def resolve_command(
         self, ctx: click.Context, args: list[str]
     ) -> tuple[str | None, click.Command | None, list[str]]:
-        """Find a command, also by its old name, which is stated once."""
+        """Find a command, also by its old name, with a note unless there is ``-q``."""
         words = current_words(args)
-        is_quiet = ctx.resilient_parsing or {"-q", "--quiet"} & set(args)
-        if words != args and not is_quiet:
-            old = len(words) - len(args) + 1
-            say(
-                f"note: 'uplift {args[0]}' is 'uplift {' '.join(words[:old])}'",
-                err=True,
-            )
+        if words != args:
+            count = len(words) - len(args) + 1
+            loud = [word for word in words if word not in ("-q", "--quiet")]
+            if loud == words and not ctx.resilient_parsing:
+                new = " ".join(words[:count])
+                say(f"note: 'uplift {args[0]}' is 'uplift {new}'", err=True)
+            words = loud
         return super().resolve_command(ctx, words)
 
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
