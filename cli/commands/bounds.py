@@ -12,7 +12,6 @@ from uplift.common.files import write_text
 
 from .. import also as further
 from .. import options
-from ..colours import is_colour
 from ..output.answers import format_rgb, hex_codes, patch
 from ..output.console import print_fields, say
 from ..output.query import answer_rows
@@ -78,7 +77,9 @@ class Cut(NamedTuple):
     """,
 )
 @colour_options
-@further.also("COLOUR", is_colour, "Colour of the same thing under another light")
+@further.also(
+    "COLOUR", further.is_colour, "Colour of the same thing under another light"
+)
 @options.light("Illuminant under which the bounds are shown", "A FL11 HP1")
 @options.table_json_or_csv
 @options.plot("Plot the bounds")
