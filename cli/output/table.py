@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from itertools import chain
 from numbers import Real
@@ -26,8 +26,6 @@ if TYPE_CHECKING:
     from rich.text import Text
 
 Row = Mapping[str, Any]
-Format = str | Callable[[Any], Any]
-"""A format of numbers, or a function that returns the text of a cell."""
 GAP = 2
 """Characters between columns."""
 UNKNOWN = "–"
@@ -41,14 +39,14 @@ class Table:
     CSV has all keys; a list of numbers has a column for each letter of its key, such as
     ``rgb``. Text has the columns of ``headings``, by their keys and in this order;
     numbers are right-aligned, and a list of numbers is one cell. A value has the format
-    of its key, or else ``digits`` if it is a float.
+    of its key, or a function's text, or else ``digits`` if it is a float.
     """
 
     rows: Iterable[Row]
     headings: Mapping[str, str] = field(default_factory=dict)
     title: str = ""
     digits: str = ".3f"
-    formats: Mapping[str, Format] = field(default_factory=dict)
+    formats: Mapping[str, Any] = field(default_factory=dict)
 
     def print_csv(self) -> None:
         """Print CSV, each row before the next one is computed."""
