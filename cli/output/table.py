@@ -15,6 +15,7 @@ from .console import (
     emit,
     has_colours,
     json_output,
+    json_row,
     paragraph,
     print_csv,
     print_json,
@@ -159,12 +160,11 @@ def print_json_rows(rows: Iterable[Row], *, single: bool) -> None:
     """Print a single row as a JSON object, or else an array of rows, each before the
     next one is computed.
     """
-    texts = map(json_output, rows)
     if single:
-        emit(*texts)
+        emit(*map(json_output, rows))
         return
     before = "[\n"
-    for text in texts:
-        sys.stdout.write(before + text)
+    for row in rows:
+        sys.stdout.write(before + json_row(row))
         before = ",\n"
     emit("\n]")
