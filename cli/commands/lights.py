@@ -210,7 +210,7 @@ def texture(
     **settings: Any,
 ) -> None:
     from uplift.extras.emission.lookup import find_table, load_emission
-    from uplift.extras.texture.uplifter import Spectrum
+    from uplift.extras.texture.encodings import Spectrum
 
     if passes is not None:
         options.exclude("--passes", "wavelengths")

@@ -43,7 +43,7 @@ from uplift.extras.files.spec import (
     resolves,
     spec_folder,
 )
-from uplift.extras.texture.colours import check_encoding
+from uplift.extras.images.reader import check_encoding
 from uplift.extras.texture.scene_colours import Images
 from uplift.lookup.cube import Cube
 from uplift.pipeline.build import build
