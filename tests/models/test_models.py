@@ -1,5 +1,7 @@
 """Properties of every spectrum model."""
 
+from typing import get_args
+
 import jax
 import jax.numpy as jnp
 import numpy as np
@@ -185,4 +187,4 @@ def test_moments_that_rounding_moved_outside_return():
 
 
 def test_builds_name_the_models_that_files_have():
-    assert set(registry.MODELS) == set(options.MODELS)
+    assert set(registry.MODELS) == set(get_args(options.ModelName))

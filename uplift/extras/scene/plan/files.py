@@ -301,8 +301,8 @@ def _check_options(values: dict[str, Any]) -> None:
         if name not in known:
             raise unknown_name(name, known, "option")
     options = Options(**recorded_options(values))
-    observer.matching_functions(options.observer)
-    problem_of(options, options.observer, options.solver)
+    observer.matching_functions(str(options.observer))
+    problem_of(options)
 
 
 class _PlanTable(SpecModel, extra="ignore"):
