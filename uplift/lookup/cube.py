@@ -275,7 +275,7 @@ class Cube:
         Cube
             The filled cube; this cube if no node is missing.
         """
-        from uplift.lookup.outside import fill_missing
+        from uplift.lookup.missing_nodes import fill_missing
 
         colours = (
             None

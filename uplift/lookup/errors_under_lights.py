@@ -153,20 +153,3 @@ def errors_from(data: CubeData, light: Light, known: Evidence) -> LightErrors:
         spectra = data.atlas.spectra.reflectance(rows, at)
         entries[rows] = delta_e_spectra(light, spectra, data.atlas.measured)[:, None]
     return LightErrors(data, light, expected, entries)
-
-
-def outside_errors(data: CubeData, light: Light | None) -> Array:
-    """ΔE00 (O,) between stored and measured spectrum of the entries outside the RGB
-    space, NaN if it is not known.
-    """
-    table = data.atlas.outside
-    if table is None:
-        return np.zeros(0)
-    if light is None or light.name == data.error_illuminant:
-        return table.error
-    if table.measured is None:
-        return np.full(len(table.names), np.nan)
-    stored = table.spectra.reflectance(
-        np.arange(len(table.names)), data.sensor.wavelengths
-    )
-    return delta_e_spectra(light, stored, table.measured)

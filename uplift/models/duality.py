@@ -7,7 +7,7 @@ Peters, Merzbach, Hanika & Dachsbacher 2019, "Using moments to represent bounded
 for spectral rendering", ACM TOG 38(4). docs/mathematics.md, 4.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
@@ -258,22 +258,29 @@ def multipliers_from_moments(
     blended with those of grey, with a weight of 1e−10 at first and at most 1e−4. Raises
     `UpliftError` for moments that no reflectance has.
     """
+    multipliers, valid = blended_multipliers(moments, _GREY_WEIGHTS, solve)
+    if valid.all():
+        return multipliers
+    sets = pluralise((~valid).sum(), "set")
+    problem = f"not the moments of any reflectance: {sets} of coefficients"
+    raise UpliftError(problem, code="invalid-moments")
+
+
+def blended_multipliers(
+    moments: Any,
+    weights: Sequence[float],
+    solve: Callable[[Any], tuple[Any, Mask]] = try_multipliers,
+) -> tuple[Any, Mask]:
+    """Multipliers (n, C) of moments (n, C), and where (n,) they are valid. Those that
+    are not are blended with grey, by one weight after another.
+    """
     grey = np.zeros_like(moments[:1])
     grey[:, 0] = 0.5
     multipliers, valid = solve(moments)
-    for weight in _GREY_WEIGHTS:
+    for weight in weights:
         pending = np.flatnonzero(~valid)
         if not pending.size:
-            return multipliers
+            break
         blend = (1 - weight) * moments[pending] + weight * grey
         multipliers[pending], valid[pending] = solve(blend)
-    if valid.all():
-        return multipliers
-    raise UpliftError(
-        (
-            f"not the moments of any reflectance: {pluralise((~valid).sum(), 'set')} "
-            "of "
-            "coefficients"
-        ),
-        code="invalid-moments",
-    )
+    return multipliers, valid
