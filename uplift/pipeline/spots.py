@@ -12,9 +12,9 @@ from uplift.common.errors import UpliftWarning, warn
 from uplift.common.text import pluralise
 from uplift.fit.problem import Problem
 from uplift.lattice.entry_boxes import EntryBoxes
-from uplift.lattice.lattice import CORNERS, weighted_sum
+from uplift.lattice.lattice import CORNERS
 from uplift.lattice.point_table import PointTable
-from uplift.models.model import reflectance
+from uplift.lookup.interpolate import lattice_spectra
 from uplift.pipeline.entries import (
     Constraints,
     MeasuredEntries,
@@ -141,8 +141,5 @@ def _lattice_spectra(
     problem: Problem, boxes: EntryBoxes, points: PointTable, rgb: Array
 ) -> Array:
     """Spectra (n, N) that the nodes answer to linear RGB (n, 3) without entries."""
-    corners, weights = boxes.lattice.corners(rgb)
-    nodes, row = np.unique(corners, return_inverse=True)
-    coefficients = points.coefficients[nodes]
-    spectra = reflectance(problem.model, coefficients, problem.sensor.wavelengths)
-    return weighted_sum(spectra, row.reshape(corners.shape), weights)
+    at = problem.sensor.wavelengths
+    return lattice_spectra(problem.model, boxes.lattice, points, rgb, at)

@@ -207,7 +207,13 @@ def _with_lattice_errors(
     return replace(
         errors,
         lattice=compare_spectra(
-            lattice_spectra(data, _inside(data, errors.rgb), data.sensor.wavelengths),
+            lattice_spectra(
+                data.model,
+                data.lattice,
+                data.points,
+                _inside(data, errors.rgb),
+                data.sensor.wavelengths,
+            ),
             errors.target,
             [sensor.light for sensor in lights],
         ),
