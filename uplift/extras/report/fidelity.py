@@ -15,10 +15,10 @@ from uplift.colorimetry.observer import light, on_range
 from uplift.colorimetry.sensor import Light, Sensor, in_unit_cube
 from uplift.common.arrays import Array, Indices
 from uplift.cube.data import CubeData
+from uplift.extras.colour.outside import MAPPING, reflectance_anywhere
 from uplift.extras.report.measures import delta_e_under, rms_difference
 from uplift.lookup.cube import Cube, load
 from uplift.lookup.interpolate import lattice_spectra
-from uplift.lookup.outside import MAPPING, reflectance_anywhere
 from uplift.lookup.refine import refine_to_rgb
 from uplift.models.model import evaluate
 from uplift.models.sigmoid import Sigmoid
@@ -207,7 +207,13 @@ def _with_lattice_errors(
     return replace(
         errors,
         lattice=compare_spectra(
-            lattice_spectra(data, _inside(data, errors.rgb), data.sensor.wavelengths),
+            lattice_spectra(
+                data.model,
+                data.lattice,
+                data.points,
+                _inside(data, errors.rgb),
+                data.sensor.wavelengths,
+            ),
             errors.target,
             [sensor.light for sensor in lights],
         ),

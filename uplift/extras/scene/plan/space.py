@@ -147,7 +147,7 @@ class CandidateSpace:
             return self.learnt[models]
 
         with warnings.catch_warnings(action="ignore", category=UpliftWarning):
-            options, problem = problem_of(options, options.observer, options.solver)
+            options, problem = problem_of(options)
             return build_stages(
                 self.atlas, options, problem, scene=ColourSet(rgb), learn=shared
             )
