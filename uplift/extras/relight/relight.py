@@ -29,12 +29,12 @@ from uplift.common.files import atomic_write
 from uplift.cube.data import common_sensor
 from uplift.extras.colour.light_sets import DESCRIPTIONS, RELIGHT_LIGHTS
 from uplift.extras.colour.srgb import to_display_codes
+from uplift.extras.images.image import read_error, utf8_name
 from uplift.extras.pages.figure import RAMP, ramp_codes, write_figure
 from uplift.extras.pages.html import render, resource
 from uplift.extras.pages.marks import error_map, picture
 from uplift.extras.pages.panels import Axis, Panel, draw
 from uplift.extras.report.measures import mean_p95_max
-from uplift.extras.texture.image import read_error, utf8_name
 from uplift.lookup.cube import Cube
 from uplift.lookup.node_table import prepare_products
 
