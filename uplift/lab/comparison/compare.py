@@ -28,7 +28,7 @@ from uplift.common.errors import (
 from uplift.common.progress import ProgressCallback, ignore_progress, reported
 from uplift.common.text import pluralise
 from uplift.extras.colour.light_sets import KMENT_LIGHTS
-from uplift.extras.scene.plan.candidates import front
+from uplift.extras.scene.plan.search import front
 from uplift.extras.scene.representations import samples
 from uplift.extras.scene.representations.samples import Representation
 from uplift.extras.scene.wavelengths.sampling import RenderSetup, make_setup
