@@ -6,10 +6,10 @@ import codecs
 import io
 import re
 import sys
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import chain
-from typing import IO, TYPE_CHECKING
+from typing import IO, TYPE_CHECKING, Any
 
 import click
 
@@ -18,6 +18,7 @@ from uplift.common.text import format_value
 from uplift.extras.files.csv import (
     DELIMITERS,
     find_delimiter,
+    is_decimal,
     parse_decimal,
     split_line,
 )
@@ -37,30 +38,26 @@ commas.
 RGBA = re.compile(r"[01](?:,[01]){3}")
 TRIPLE = re.compile(r"[+-]?\d+(?:,\d+)?(?: [+-]?\d+(?:,\d+)?){2}", re.ASCII)
 """Three numbers, whole or with decimal commas."""
+HEX = re.compile(r"#?([0-9a-fA-F]{6})|#([0-9a-fA-F]{3})")
+_NUMBER = r"([+-]?+(?:[0-9]++\.?+[0-9]*+|\.[0-9]++)(?:[eE][+-]?+[0-9]++)?+)"
+PLAIN = re.compile(rf"{_NUMBER}(, ?|[;\t ]){_NUMBER}\2{_NUMBER}")
+"""Line of three numbers with decimal points, which is parsed without a search for the
+delimiter.
+"""
+STATED_DELIMITER = re.compile(r"\s*\"?sep=.\"?\s*", re.IGNORECASE)
+"""First line that states the delimiter to spreadsheets."""
 DECIMALS = (
     "write decimal points, or separate numbers with decimal commas by semicolons: "
     "'0,2;0,3;0,4'"
 )
-HEX = re.compile(r"#?([0-9a-fA-F]{6})|#([0-9a-fA-F]{3})")
-_NUMBER = r"[+-]?+(?:[0-9]++\.?+[0-9]*+|\.[0-9]++)(?:[eE][+-]?+[0-9]++)?+"
-PLAIN_LINES = re.compile(
-    rf"(?:{_NUMBER}(, ?|[;\t ]){_NUMBER}\1{_NUMBER}\n)++|(?:#[0-9a-fA-F]{{6}}\n)++"
-)
-"""Lines of three numbers with decimal points, or of hex colours: parsed at once."""
-SEPARATORS = str.maketrans(",;", "  ")
-STATED_DELIMITER = re.compile(r"\s*\"?sep=.\"?\s*", re.IGNORECASE)
-"""First line that states the delimiter to spreadsheets."""
 SYNTAX = "write three numbers (R G B) or a hex colour such as '#cc3319'"
 TABLE = "give a CSV file of colours"
 CHUNK = 1 << 16
 """Bytes read at once. A pipe gives those that have arrived."""
 MAX_LINE = 1 << 16
 """Characters of a line."""
-
-
-Colour = tuple[list[float], bool]
-"""Three numbers, or those of several colours, and whether they are encoded 8-bit codes.
-"""
+Colour = tuple[Sequence[float], bool]
+"""Three numbers, and whether they are the 8-bit codes of a hex colour."""
 
 
 @dataclass(frozen=True)
@@ -85,29 +82,25 @@ class ColourSource:
             self.xyz is not None or len(_parse_words(self.words)) == 1
         )
 
-    def blocks(self, sensor: Sensor, *, bounded: bool = False) -> Iterable[Array]:
-        """Return blocks of linear RGB (n, 3) from the words or the file, which must lie
+    def blocks(self, sensor: Sensor, *, bounded: bool = False) -> Iterator[Array]:
+        """Yield blocks of linear RGB (n, 3) from the words or the file, which must lie
         in [0, 1] if ``bounded``.
         """
-        if self.path is not None:
-            return self._read(self.path, sensor, bounded)
-        colours = _parse_words(self.words)
-        if self.encoded:
-            _warn_of_fractions(colours)
-        for word in self.words:
-            self._check_commas(word)
-        return [self._linear(colours, sensor)]
-
-    def _read(self, path: str, sensor: Sensor, bounded: bool) -> Iterator[Array]:
+        if self.path is None:
+            colours = _parse_words(self.words)
+            if self.encoded:
+                _warn_of_fractions(colours)
+            for word in self.words:
+                self._check_commas(word)
+            yield self._linear(colours, sensor)
+            return
+        name = "standard input" if self.path == "-" else self.path
         try:
-            with click.open_file(path, "rb") as file:
-                yield from self.parse_table(
-                    file, "standard input" if path == "-" else path, sensor, bounded
-                )
+            with click.open_file(self.path, "rb") as file:
+                yield from self.parse_table(file, name, sensor, bounded)
         except OSError as error:
-            raise ColourError(
-                f"cannot be read: {error.strerror}", path=path, hint=TABLE
-            ) from error
+            problem = f"cannot be read: {error.strerror}"
+            raise ColourError(problem, path=self.path, hint=TABLE) from error
 
     def parse_table(
         self, file: IO[bytes], name: str, sensor: Sensor, bounded: bool = False
@@ -119,25 +112,37 @@ class ColourSource:
         decimal commas. A first line without numbers is a header. Further columns are
         ignored.
         """
+        from uplift.colorimetry.sensor import SLACK
+
+        numbers = (
+            (-SLACK, 1 + SLACK)
+            if bounded
+            else (-sys.float_info.max, sys.float_info.max)
+        )
         empty = True
-        width = None  # cells of the header, 0 without one
-        for rows in _row_blocks(file, name):
-            colours = list[Colour]()
-            for line, text, row in rows:
-                if not row:
-                    colours.append(self._parse_plain(text, name, line, bounded))
-                    width = width or 0
-                    continue
-                if width is None:
-                    width = len(row) if _is_header(row) else 0
-                    if width:
-                        continue
-                colour = _parse(row[:1] if row[0].startswith("#") else row)
+        header: int | None = None  # number of its cells, 0 without one
+        for lines in _line_blocks(file, name):
+            colours = []
+            for line, text in lines:
+                place: dict[str, Any] = {"path": name, "line": line}
+                colour = _parse_plain(text)
                 if colour is None:
-                    raise _not_a_colour(text, name, line)
-                if width != len(row):
-                    self._check_commas(text, name, line)
-                self._check_range(colour, text, name, line, bounded)
+                    row = _cells(text, **place)
+                    if not row:
+                        continue
+                    if header is None and _is_header(row):
+                        header = len(row)
+                        continue
+                    colour = _parse(row[:1] if row[0].startswith("#") else row)
+                    if colour is None:
+                        raise _not_a_colour(text, **place)
+                    if len(row) != header:
+                        self._check_commas(text, **place)
+                header = header or 0
+                is_code = self.encoded or colour[1]
+                low, high = (0, 255) if is_code else numbers
+                if not all(low <= number <= high for number in colour[0]):
+                    raise _out_of_range(text, is_code, bounded, **place)
                 colours.append(colour)
             if colours:
                 empty = False
@@ -149,83 +154,47 @@ class ColourSource:
                 hint="give lines of r,g,b or of hex colours",
             )
 
-    def _check_commas(
-        self, text: str, path: str | None = None, line: int | None = None
-    ) -> None:
-        if not self.encoded and _is_ambiguous(text):
+    def _check_commas(self, text: str, **place: Any) -> None:
+        """Raise an error for a text between commas that may be three numbers with
+        decimal commas; not red, green, blue and alpha.
+        """
+        cells = re.sub(r"\s", "", text)
+        if (
+            not self.encoded
+            and cells.count(",") > 2
+            and RGBA.fullmatch(cells) is None
+            and AMBIGUOUS.fullmatch(cells)
+        ):
             raise ColourError(
                 f"{format_value(text)} may have decimal commas, or more than three "
                 "numbers",
                 code="ambiguous-numbers",
-                path=path,
-                line=line,
                 hint=DECIMALS,
+                **place,
             )
 
-    def _parse_plain(self, text: str, name: str, line: int, bounded: bool) -> Colour:
-        """Parse `PLAIN_LINES`."""
-        is_hex = text.startswith("#")
-        if is_hex:
-            numbers = list[float](bytes.fromhex(text.replace("#", "")))
-        else:
-            numbers = list(map(float, text.translate(SEPARATORS).split()))
-        low, high = self._limits(is_hex, bounded)
-        if not low <= min(numbers) <= max(numbers) <= high:
-            for row, words in enumerate(text.splitlines()):
-                colour = numbers[3 * row : 3 * row + 3], is_hex
-                self._check_range(colour, words, name, line + row, bounded)
-        return numbers, is_hex
-
-    def _limits(self, is_hex: bool, bounded: bool) -> tuple[float, float]:
-        from uplift.colorimetry.sensor import SLACK
-
-        if self.encoded or is_hex:
-            return 0, 255
-        if bounded:
-            return -SLACK, 1 + SLACK
-        return -sys.float_info.max, sys.float_info.max
-
-    def _check_range(
-        self, colour: Colour, text: str, name: str, line: int, bounded: bool
-    ) -> None:
-        """Check the range as the cube does, but report the line."""
-        numbers, encoded = colour
-        low, high = self._limits(encoded, bounded)
-        if all(low <= number <= high for number in numbers):
-            return
-        values = format_value(text)
-        if self.encoded or encoded:
-            problem = f"8-bit codes must be in [0, 255], got {values}"
-            raise ColourError(problem, code="invalid-codes", path=name, line=line)
-        if bounded:
-            problem = f"linear RGB must be in [0, 1], got {values}"
-            raise ColourError(problem, code="rgb-out-of-gamut", path=name, line=line)
-        raise ColourError(f"{values} is not finite", path=name, line=line, hint=SYNTAX)
-
-    def _linear(self, colours: list[Colour], sensor: Sensor) -> Array:
+    def _linear(self, colours: Sequence[Colour], sensor: Sensor) -> Array:
         """Decode codes, and convert colours of another space to the sensor's."""
         import numpy as np
 
         space = self.space
-        values = np.array(list(chain.from_iterable(numbers for numbers, _ in colours)))
-        values = values.astype(float).reshape(-1, 3)
-        codes = [self.encoded or encoded for _, encoded in colours]
-        mask = np.repeat(codes, [len(numbers) // 3 for numbers, _ in colours])
+        values = np.array([numbers for numbers, _ in colours], dtype=float)
+        codes = np.array([self.encoded or is_hex for _, is_hex in colours])
         if space is not None and space.decode is not None:
-            values[mask] = space.decode(values[mask] / 255)
+            values[codes] = space.decode(values[codes] / 255)
             if space.floats_are_codes:
-                values[~mask] = space.decode(values[~mask])
-        elif mask.any():
+                values[~codes] = space.decode(values[~codes])
+        elif codes.any():
             from uplift.lookup.blocks import decode_codes
 
-            values[mask] = decode_codes(sensor, values[mask])
+            values[codes] = decode_codes(sensor, values[codes])
         matrix = None if space is None else space.matrix_to(sensor)
         return values if matrix is None else np.asarray(values @ matrix.T)
 
 
 def is_colour(text: str) -> bool:
     """Whether a text is a colour."""
-    return HEX.fullmatch(text) is not None or _parse(text.split(",")) is not None
+    return _parse(text.split(",")) is not None
 
 
 def find_colours(
@@ -240,7 +209,6 @@ def find_colours(
     """Return the source that the values of `colour_sources` name. Raises click's error
     for none or several.
     """
-    space = None if input_space is None else find_input_space(input_space)
     if colour == ("-",):
         colour = ()
         input_path = input_path or "-"
@@ -259,20 +227,19 @@ def find_colours(
         xyz = x * luminance / y, luminance, (1 - x - y) * luminance / y
     if (xyz is not None) + bool(colour) + (input_path is not None) != 1:
         raise click.UsageError("Give colours, --input FILE, '-', --xyz or --xy.")
+    space = None if input_space is None else find_input_space(input_space)
     return ColourSource(colour, input_path, xyz, encoded, space)
 
 
-def _row_blocks(
-    file: IO[bytes], name: str
-) -> Iterator[list[tuple[int, str, list[str]]]]:
-    """Yield line numbers, texts and cells in blocks, each as soon as it can be read: a
-    stream may never end. `PLAIN_LINES` have one text and no cells.
+def _line_blocks(file: IO[bytes], name: str) -> Iterator[list[tuple[int, str]]]:
+    """Yield numbered lines in blocks, each as soon as it can be read: a stream may
+    never end.
     """
     decoder = io.IncrementalNewlineDecoder(
         codecs.getincrementaldecoder("utf-8-sig")(), translate=True
     )
     read = getattr(file, "read1", file.read)
-    line = 1
+    number = 1
     unread = ""
     at_end = False
     while not at_end:
@@ -282,32 +249,17 @@ def _row_blocks(
             unread += decoder.decode(chunk, final=at_end)
         except UnicodeDecodeError as error:
             raise ColourError("is not a text file", path=name, hint=TABLE) from error
-        for number, text in enumerate(unread.split("\n"), line):
+        lines = list(enumerate(unread.split("\n"), number))
+        for line, text in lines:
             if len(text) > MAX_LINE:
-                raise ColourError(
-                    f"lines must not exceed {MAX_LINE:,} characters",
-                    path=name,
-                    line=number,
-                    hint=TABLE,
-                )
-        if at_end:
-            unread += "\n"
-        rows = []
-        start = 0
-        while end := unread.find("\n", start) + 1:
-            plain = PLAIN_LINES.match(unread, start)
-            if plain:
-                end = plain.end()
-                rows.append((line, plain[0], list[str]()))
-            elif row := _cells(unread[start : end - 1], name, line):
-                rows.append((line, unread[start:end].strip(), row))
-            line += unread.count("\n", start, end)
-            start = end
-        unread = unread[start:]
-        yield rows
+                problem = f"lines must not exceed {MAX_LINE:,} characters"
+                raise ColourError(problem, path=name, line=line, hint=TABLE)
+        if not at_end:
+            number, unread = lines.pop()
+        yield lines
 
 
-def _cells(text: str, name: str, line: int) -> list[str]:
+def _cells(text: str, path: str, line: int) -> list[str]:
     """Return the cells of a line; none if it is empty or states the delimiter."""
     if not text.strip("".join(DELIMITERS)) or (
         line == 1 and STATED_DELIMITER.match(text)
@@ -316,7 +268,7 @@ def _cells(text: str, name: str, line: int) -> list[str]:
     try:
         return split_line(text, find_delimiter([text]))
     except ValueError as error:
-        raise ColourError(str(error), path=name, line=line, hint=TABLE) from error
+        raise ColourError(str(error), path=path, line=line, hint=TABLE) from error
 
 
 def _is_header(row: Sequence[str]) -> bool:
@@ -324,33 +276,26 @@ def _is_header(row: Sequence[str]) -> bool:
     return (
         re.match(r"#\w", row[0]) is None
         and _parse(row[:1]) is None
-        and all(_number(cell) is None for cell in row)
+        and not any(map(is_decimal, row))
     )
 
 
-def _is_ambiguous(text: str) -> bool:
-    """Whether a text between commas may be three numbers with decimal commas; not red,
-    green, blue and alpha.
-    """
-    text = re.sub(r"\s", "", text)
-    return (
-        text.count(",") > 2
-        and RGBA.fullmatch(text) is None
-        and AMBIGUOUS.fullmatch(text) is not None
-    )
+def _parse_plain(text: str) -> Colour | None:
+    match = PLAIN.fullmatch(text)
+    if match is None:
+        return None
+    red, _, green, blue = match.groups()
+    return (float(red), float(green), float(blue)), False
 
 
 def _parse(cells: Sequence[str]) -> Colour | None:
     """Parse one hex colour, or the first three of several numbers."""
     if len(cells) == 1 and (match := HEX.fullmatch(cells[0])):
         digits = match[1] or "".join(2 * digit for digit in match[2])
-        return list(bytes.fromhex(digits)), True
-    if len(cells) < 3:
+        return tuple(bytes.fromhex(digits)), True
+    if len(cells) < 3 or not all(map(is_decimal, cells[:3])):
         return None
-    try:
-        return list(map(parse_decimal, cells[:3])), False
-    except ValueError:
-        return None
+    return tuple(map(parse_decimal, cells[:3])), False
 
 
 def _parse_words(words: Sequence[str]) -> list[Colour]:
@@ -370,7 +315,7 @@ def _parse_words(words: Sequence[str]) -> list[Colour]:
         else:
             cells += filter(None, unread[0].split(","))
             unread = unread[1:]
-    colours: list[Colour] = []
+    colours = list[Colour]()
     while cells:
         length = 3 if _parse(cells[:3]) else 1
         colour = _parse(cells[:length])
@@ -394,16 +339,18 @@ def _warn_of_fractions(colours: Sequence[Colour]) -> None:
         warn([UpliftWarning(problem, hint=hint)])
 
 
-def _number(word: str) -> float | None:
-    try:
-        return parse_decimal(word)
-    except ValueError:
-        return None
+def _not_a_colour(text: str, **place: Any) -> ColourError:
+    problem = f"{format_value(text.strip())} is not a colour"
+    return ColourError(problem, hint=SYNTAX, **place)
 
 
-def _not_a_colour(
-    text: str, path: str | None = None, line: int | None = None
-) -> ColourError:
-    return ColourError(
-        f"{format_value(text)} is not a colour", path=path, line=line, hint=SYNTAX
-    )
+def _out_of_range(text: str, is_code: bool, bounded: bool, **place: Any) -> ColourError:
+    """Return the error that the cube raises, with the line."""
+    values = format_value(text.strip())
+    if is_code:
+        problem = f"8-bit codes must be in [0, 255], got {values}"
+        return ColourError(problem, code="invalid-codes", **place)
+    if bounded:
+        problem = f"linear RGB must be in [0, 1], got {values}"
+        return ColourError(problem, code="rgb-out-of-gamut", **place)
+    return ColourError(f"{values} is not finite", hint=SYNTAX, **place)

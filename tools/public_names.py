@@ -20,7 +20,7 @@ from uplift_cli.main import main
 
 from uplift.cube.file import KIND
 from uplift.extras.emission.file import KIND as LIGHTS
-from uplift.extras.export.program import read_source
+from uplift.extras.export.source import read_source
 
 ROOT = Path(__file__).parents[1]
 STORED = ROOT / "tests" / "reference" / "public_names.txt"

@@ -21,8 +21,7 @@ from ..startup import use_one_blas_thread
 
 if TYPE_CHECKING:
     from uplift.colorimetry.illuminants import Illuminant
-    from uplift.lab.comparison.compare import Comparison
-    from uplift.lab.runner import Row
+    from uplift.extras.papers.representations.compare import Comparison, Row
 
 FILES = ("compare-boxes.png", "compare-cost.png", "compare.html")
 SPECTRA = ("surfaces.csv", "lights.csv")
@@ -101,7 +100,7 @@ def command(
     force: bool,
 ) -> None:
     use_one_blas_thread()
-    from uplift.lab.comparison.compare import check_target
+    from uplift.extras.papers.representations.compare import check_target
 
     if write is not None:
         if output is None or filters or tolerance is not None:
@@ -116,7 +115,7 @@ def command(
     check_folder(output, FILES, inputs=atlas_files(files))
     comparison, tuned = _measure(files, lights, filters=filters, quick=quick)
     if output is not None:
-        from uplift.lab.comparison.pictures import (
+        from uplift.extras.papers.representations.pictures import (
             render_comparison,
             write_boxes,
             write_costs,
@@ -142,8 +141,8 @@ def _write_spectra(
 ) -> None:
     from uplift.atlas.atlas import merge
     from uplift.atlas.sources import write_atlas
-    from uplift.extras.scene.representations import find_representation
-    from uplift.lab.comparison.compare import make_scene, represent
+    from uplift.extras.papers.representations.compare import make_scene, represent
+    from uplift.extras.papers.representations.registry import find_representation
 
     representation = find_representation(name)
     check_folder(output, SPECTRA, inputs=atlas_files(files))
@@ -164,16 +163,24 @@ def _measure(
     filters: bool,
     quick: bool,
 ) -> tuple[Comparison, list[Row]]:
-    from uplift.lab.comparison.compare import compare, make_scene
-    from uplift.lab.comparison.fitted import scene_representations
-    from uplift.lab.comparison.tuning import COARSE_STRIDE, FINE_STRIDE, tune_filters
+    from uplift.extras.papers.representations.compare import compare, make_scene
+    from uplift.extras.papers.representations.fitted import scene_representations
+    from uplift.extras.papers.representations.tuning import (
+        COARSE_STRIDE,
+        FINE_STRIDE,
+        tune_filters,
+    )
+    from uplift.extras.scene.passes.representation import pass_representations
 
     scene = make_scene(read_atlases(files), lights)
     if quick:
         scene = scene.thinned()
     with progress_bar("representations") as progress:
         comparison = compare(
-            scene, scene_representations(scene), quick=quick, progress=progress
+            scene,
+            (*scene_representations(scene), *pass_representations()),
+            quick=quick,
+            progress=progress,
         )
     if not filters:
         return comparison, []
@@ -185,7 +192,7 @@ def _measure(
 
 def _print_advice(comparison: Comparison, tolerance: float) -> None:
     from uplift.extras.pages.format import format_error, format_time
-    from uplift.lab.comparison.compare import cheapest
+    from uplift.extras.papers.representations.compare import cheapest
 
     for name, title in comparison.sets.items():
         rows = comparison.of(name)
@@ -206,7 +213,7 @@ def _print_advice(comparison: Comparison, tolerance: float) -> None:
 
 def _print_table(comparison: Comparison, tuned: list[Row], *, every: bool) -> None:
     from uplift.extras.pages.format import format_time
-    from uplift.lab.comparison.compare import HEADINGS, pareto
+    from uplift.extras.papers.representations.compare import HEADINGS, pareto
 
     tables = []
     for name, title in comparison.sets.items():

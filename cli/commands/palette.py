@@ -21,8 +21,8 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from uplift.common.arrays import Array
-    from uplift.extras.palette.design import Design, Matrix
-    from uplift.extras.palette.palette import Palette, SpectrumSpec
+    from uplift.extras.papers.palette.design import Design, Matrix
+    from uplift.extras.papers.palette.palette import Palette, SpectrumSpec
 
 LEGEND = "requested, obtained, factor model, ΔE00 of obtained/model; * designed"
 
@@ -87,13 +87,13 @@ def command(
     force: bool,
 ) -> None:
     from uplift.common.files import write_text
-    from uplift.extras.palette.design import design, matrix, write_designed
-    from uplift.extras.palette.factor import standard_model
-    from uplift.extras.palette.picture import cutaway
-    from uplift.extras.palette.plots import plot_matrix, plot_spectra
-    from uplift.extras.palette.relight_page import page, relighting
-    from uplift.extras.palette.spec import read_palette
-    from uplift.extras.palette.unmet import unmet_goals
+    from uplift.extras.papers.palette.design import design, matrix, write_designed
+    from uplift.extras.papers.palette.factor import standard_model
+    from uplift.extras.papers.palette.picture import cutaway
+    from uplift.extras.papers.palette.plots import plot_matrix, plot_spectra
+    from uplift.extras.papers.palette.relight_page import page, relighting
+    from uplift.extras.papers.palette.spec import read_palette
+    from uplift.extras.papers.palette.unmet import unmet_goals
 
     palette = read_palette(spec)
     check_outputs(output, plot_path, spectra_path, html, inputs=palette.sources)
@@ -134,7 +134,7 @@ def _read_picture(
         return None
     if html is None:
         raise click.UsageError("--image requires --html, the page to write.")
-    from uplift.extras.palette.picture import read_weights
+    from uplift.extras.papers.palette.picture import read_weights
 
     colours: dict[str, str] = {}
     for label in labels:

@@ -19,8 +19,8 @@ if TYPE_CHECKING:
     from uplift.colorimetry.illuminants import Illuminant
     from uplift.colorimetry.sensor import Sensor
     from uplift.common.arrays import Array
-    from uplift.extras.scene.wavelengths import Choice
-    from uplift.extras.scene.wavelengths.sampling import RenderSetup
+    from uplift.extras.papers.wavelengths.choice import Choice
+    from uplift.extras.papers.wavelengths.sampling import RenderSetup
 
 
 @click.command(
@@ -96,7 +96,7 @@ def command(
     from uplift.atlas.atlas import merge
     from uplift.atlas.resampling import on_grid
     from uplift.colorimetry.observer import require_observer, sensor
-    from uplift.extras.scene.wavelengths import grid, make_setup
+    from uplift.extras.papers.wavelengths.sampling import grid, make_setup
 
     check_outputs(plot_path, inputs=atlas_files(files))
     require_observer(observer, "weights of wavelengths")
@@ -107,7 +107,7 @@ def command(
     with progress_bar("fitting wavelengths"):
         choice = _choose(setup, **goal)
     if plot_path is not None:
-        from uplift.extras.scene.wavelengths.plots import plot_choice
+        from uplift.extras.papers.wavelengths.plots import plot_choice
 
         plot_choice(setup, choice, plot_path, force=force)
         say(f"{plot_path}: lights, wavelengths and weights", err=True)
@@ -148,12 +148,13 @@ def _choose(
     orders: tuple[int, int, int] | None,
     channels: str | None,
 ) -> Choice:
-    from uplift.extras.scene import wavelengths as library
+    from uplift.extras.papers.wavelengths import choice as library
+    from uplift.extras.papers.wavelengths.sampling import grid
 
     if orders is not None:
         return library.choose_orders(setup, orders, channels or "opponent")
     if wavelengths is not None:
-        check_range(wavelengths, library.grid())
+        check_range(wavelengths, grid())
         return library.fit_weights(setup, wavelengths)
     return library.choose(
         setup,
@@ -166,7 +167,7 @@ def _choose(
 
 def _summarise(choice: Choice, materials: Sequence[str]) -> dict[str, dict[str, Any]]:
     """Return statistics of the errors and the worst material, by light."""
-    from uplift.extras.scene.wavelengths.sampling import statistics
+    from uplift.extras.papers.wavelengths.sampling import statistics
 
     by_light = dict(zip(choice.sampling.lights, choice.errors, strict=True))
     if len(by_light) > 1:

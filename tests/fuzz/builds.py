@@ -38,8 +38,8 @@ from uplift.cube.file import digest
 from uplift.extras import texture
 from uplift.extras.export.program_table import moved_cells
 from uplift.extras.export.rounding import rounding_error
+from uplift.extras.timing import environment
 from uplift.fit import base, batch
-from uplift.lab.timing import environment
 from uplift.lattice.lattice import CORNERS, Lattice
 from uplift.lookup.interpolate import MODES
 

@@ -34,9 +34,9 @@ from uplift.cube.data import CubeData
 from uplift.cube.file import read, summarise
 from uplift.cube.schema import POINTS
 from uplift.extras.colour.query import query
-from uplift.extras.palette.design import design, matrix
-from uplift.extras.palette.factor import standard_model
-from uplift.extras.palette.spec import read_palette
+from uplift.extras.papers.palette.design import design, matrix
+from uplift.extras.papers.palette.factor import standard_model
+from uplift.extras.papers.palette.spec import read_palette
 from uplift.extras.report.rebuild import recorded_atlas
 from uplift.extras.scene.plan.files import FORMAT, read_plan, read_scene_file
 from uplift.extras.texture.colours import Counts

@@ -2,7 +2,7 @@
 
 import tracemalloc
 from dataclasses import dataclass
-from typing import Annotated
+from typing import Annotated, Any
 
 import numpy as np
 import pytest
@@ -139,6 +139,8 @@ def test_look_ups_keep_their_code_and_other_errors_get_the_hint(read):
 
 class Keys(SpecModel, extra="allow"):
     """A table of any keys."""
+
+    a: Any = None
 
 
 @pytest.mark.parametrize(

@@ -33,6 +33,7 @@ from uplift.extras.paint.paint_samples import (
 )
 from uplift.extras.paint.paints import Paints
 from uplift.extras.paint.pigments import Pigment
+from uplift.models.least_squares import least_squares
 
 INSIDE = 0.6
 """Internal reflectance of the surface that is expected: an index of 1.5."""
@@ -323,23 +324,24 @@ def _ascend(
     ``evaluate`` maps variables to the differences (m,) to the measured values, and
     ``differentiate`` to their Jacobian (m, d). ``spread`` (m,) is that of the values.
     """
-    from uplift.fit.entries import Marquardt
-    from uplift.fit.solver import iterate_rows
-
     steps = count()
 
-    def residuals(y: Array, _: Indices) -> tuple[Array, None]:
+    def residuals(y: Array, _: Indices) -> Array:
         report(next(steps))
-        return np.append(evaluate(y[0]) / spread, y[0])[None], None
+        return np.append(evaluate(y[0]) / spread, y[0])[None]
 
-    def normal_equations(y: Array, values: Array) -> tuple[Array, Array]:
+    def normal_equations(y: Array, values: Array, _: Indices) -> tuple[Array, Array]:
         jacobian = np.asarray(differentiate(y[0])) / spread[:, None]
         gram = jacobian.T @ jacobian + np.eye(y.size)
         return gram[None], values[:, : -y.size] @ jacobian + y
 
-    solver = Marquardt(rtol=PRECISION)
-    options = {"normal_equations": normal_equations}
-    found = iterate_rows(solver, residuals, start[None], lambda _: options, MAX_STEPS)
+    found = least_squares(
+        residuals,
+        normal_equations,
+        start[None],
+        max_steps=MAX_STEPS,
+        precision=PRECISION,
+    )
     return found[0], next(steps) <= MAX_STEPS
 
 

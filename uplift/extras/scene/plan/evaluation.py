@@ -10,8 +10,8 @@ import numpy as np
 from uplift.colorimetry.delta_e import delta_e_2000, delta_e_2000_weights, lab_jacobian
 from uplift.common.arrays import Array, Indices
 from uplift.common.progress import Progress, ProgressCallback
-from uplift.extras.scene.wavelengths import Sampling, choose
-from uplift.extras.scene.wavelengths.sampling import RenderSetup
+from uplift.extras.papers.wavelengths.choice import choose
+from uplift.extras.papers.wavelengths.sampling import RenderSetup, Sampling
 from uplift.lookup.cube import Cube
 
 WORST_DELTA_E = 100.0

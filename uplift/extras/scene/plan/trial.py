@@ -15,10 +15,10 @@ from uplift.atlas.sources import read_atlas
 from uplift.common.arrays import Array
 from uplift.common.errors import UpliftWarning
 from uplift.common.progress import ProgressCallback
+from uplift.extras.papers.wavelengths.sampling import make_setup
 from uplift.extras.scene.plan.candidates import Candidate
 from uplift.extras.scene.plan.evaluation import EvaluationSet
 from uplift.extras.scene.plan.files import SceneFile
-from uplift.extras.scene.wavelengths import make_setup
 from uplift.extras.texture.scene_colours import (
     ColourSet,
     Images,
