@@ -124,7 +124,6 @@ def test_bounds_of_a_real_scene_exclude_no_cheaper_candidate(
 ):
     scene = plan.read_scene_file(kitchen)
     monkeypatch.setattr("uplift.extras.scene.plan.space.MARGIN", 0.0)
-    monkeypatch.setattr("uplift.extras.scene.plan.planning.FLOOR", 0.0)
     everything = plan.plan(scene, SMALL).measured
     found, _ = planned
     assert len(found.measured) <= len(everything) <= found.considered
