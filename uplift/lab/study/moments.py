@@ -21,7 +21,7 @@ from uplift.common.arrays import Array, Complex
 from uplift.common.errors import AtlasError, OptionError
 from uplift.common.progress import ProgressCallback, ignore_progress, reported
 from uplift.extras.colour.light_sets import REPORT_LIGHTS
-from uplift.extras.report.measures import delta_e_under, rms_difference
+from uplift.extras.report.comparison import delta_e_under, rms_difference
 from uplift.extras.scene.representations import samples
 from uplift.lab.runner import Row, named_lights
 from uplift.models import duality
