@@ -34,7 +34,7 @@ from uplift.extras.pages.figure import RAMP, ramp_codes, write_figure
 from uplift.extras.pages.html import render, resource
 from uplift.extras.pages.marks import error_map, picture
 from uplift.extras.pages.panels import Axis, Panel, draw
-from uplift.extras.report.measures import mean_p95_max
+from uplift.extras.report.comparison import mean_p95_max
 from uplift.lookup.cube import Cube
 from uplift.lookup.node_table import prepare_products
 

@@ -22,7 +22,7 @@ from uplift.common.errors import AtlasError, OptionError
 from uplift.common.progress import ProgressCallback, ignore_progress, reported
 from uplift.extras.colour.light_sets import REPORT_LIGHTS
 from uplift.extras.papers.representations import samples
-from uplift.extras.report.measures import delta_e_under, rms_difference
+from uplift.extras.report.comparison import delta_e_under, rms_difference
 from uplift.lab.runner import Row, named_lights
 from uplift.lab.study.unmirrored import fourier_basis, try_complex_multipliers
 from uplift.models import duality
