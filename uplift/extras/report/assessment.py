@@ -154,7 +154,7 @@ class Assessment:
 
     @cached_property
     def alternatives(self) -> dict[str, SpectraComparison]:
-        """Errors of other methods at the colours of ``entries``; empty without these."""
+        """Errors of other methods at the colours of ``entries``."""
         if self.entries is None:
             return {}
         return find_alternatives(self.data, self.entries, self._lights)

@@ -15,10 +15,10 @@ from uplift.colorimetry.observer import light, on_range
 from uplift.colorimetry.sensor import Light, in_unit_cube
 from uplift.common.arrays import Array, Indices
 from uplift.cube.data import CubeData
+from uplift.extras.colour.outside import MAPPING, reflectance_anywhere
 from uplift.extras.report.comparison import SpectraComparison, compare_spectra
 from uplift.lookup.cube import Cube, load
 from uplift.lookup.interpolate import lattice_spectra
-from uplift.lookup.outside import MAPPING, reflectance_anywhere
 from uplift.lookup.refine import refine_to_rgb
 from uplift.models.model import evaluate
 from uplift.models.sigmoid import Sigmoid
@@ -156,7 +156,9 @@ def _with_lattice_errors(
     data = cube.data
     table = data.atlas.with_outside
     inside = _inside(data, errors.rgb)
-    lattice = lattice_spectra(data, inside, data.sensor.wavelengths)
+    lattice = lattice_spectra(
+        data.model, data.lattice, data.points, inside, data.sensor.wavelengths
+    )
     predicted = errors.predicted
     if predicted is not None:
         is_outside = rows >= len(data.atlas.names)
@@ -228,7 +230,7 @@ def _without_atlas(target: Array, data: CubeData) -> Array:
 
 
 def _sigmoid(data: CubeData, rgb: Array) -> Array:
-    """Reflectance (E, N) of the sigmoid with exactly the colours (E, 3), from grey on."""
+    """Reflectance (E, N) of the sigmoid with exactly the colours (E, 3)."""
     model = Sigmoid()
     multipliers = refine_to_rgb(data, model, np.zeros((len(rgb), model.count)), rgb)
     answers = evaluate(model, multipliers, data.sensor.wavelengths)

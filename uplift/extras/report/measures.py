@@ -15,7 +15,6 @@ from uplift.lookup.cube import Cube
 from uplift.lookup.interpolate import MODES
 from uplift.models.model import reflectance
 
-
 MAX_LISTED = 24  # nodes over the threshold that a report lists
 
 
