@@ -32,7 +32,7 @@ from uplift.extras.paint.paint_samples import (
 from uplift.extras.paint.paints import Paints
 from uplift.extras.paint.paints_file import read_paints
 from uplift.extras.paint.recipes import PaintTarget, match
-from uplift.lab.timing import stopwatch
+from uplift.extras.timing import stopwatch
 
 INVENTED = read_paints(REFERENCE / "invented_paints.toml")
 """Paints of which the swatches of ``uplift samples`` are made."""

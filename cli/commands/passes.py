@@ -219,35 +219,3 @@ def _light_numbers(passes: Passes, light: Illuminant) -> list[float]:
         hint = "choose the passes with this light"
         warn([UpliftWarning(problem, code="numbers-negative", hint=hint)])
     return np.maximum(numbers, 0).tolist()
-
-
-@command.command(
-    "page",
-    help="""Write a page that draws a room with WebGL, as RGB and in two passes, with
-    sliders for the light.
-
-    The paints of the room are those of a ColorChecker. The passes must be two, with two
-    lights or more: the first is mixed with one of the others.
-
-    \b
-    Examples:
-      uplift passes page p.toml -o room.html
-    """,
-)
-@passes_argument
-@options.output(
-    help="Page to write.", default="room.html", type=options.PAGE, show_default=True
-)
-@options.force
-def page(passes_path: str, output: str, force: bool) -> None:
-    from uplift.atlas.resampling import on_grid
-    from uplift.atlas.sources import read_atlas
-    from uplift.colorimetry import observer
-    from uplift.common.files import write_text
-    from uplift.extras.scene.passes.browser_page import page
-    from uplift.extras.scene.passes.file import read_passes
-
-    check_outputs(output)
-    checker = on_grid(read_atlas("macbeth"), observer.grid())
-    write_text(page(read_passes(passes_path), checker), output, force=force)
-    say(f"{output}: room in two passes", err=True)

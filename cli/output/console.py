@@ -51,7 +51,7 @@ def flush_stdout() -> None:
         raise
 
 
-def columns() -> int:
+def window_width() -> int:
     """Return the characters of a line of the window, COLUMNS or 80."""
     return max(shutil.get_terminal_size().columns, MIN_WIDTH)
 
@@ -73,7 +73,7 @@ def paragraph(
     """
     lines = textwrap.wrap(
         printable(text),
-        columns() - indent,
+        window_width() - indent,
         break_long_words=False,
         break_on_hyphens=False,
     )
@@ -188,11 +188,11 @@ def show(*tables: SafeTable) -> None:
 
     from .tables import table_width
 
-    divided = chain.from_iterable(table.parts(columns()) for table in tables)
+    divided = chain.from_iterable(table.parts(window_width()) for table in tables)
     for number, table in enumerate(divided):
         if number:
             say()
-        width = max(columns(), table_width(table.columns))
+        width = max(window_width(), table_width(table.columns))
         body = list(table.take_body())
         Console(
             file=sys.stdout, width=width, highlight=False, markup=False, emoji=False

@@ -181,9 +181,3 @@ def test_recipe(run, passes, tool):
     assert len(shown.splitlines()) > 5
     if tool == "blender":
         compile(shown, "recipe", "exec")
-
-
-def test_page(run, refuse, passes, home):
-    run("passes page passes.toml -o room.html")
-    assert "WebGL" in (home / "room.html").read_text(encoding="utf-8")
-    assert refuse("passes page passes.toml -o room.html").code == "file-exists"

@@ -36,7 +36,7 @@ from uplift.common.errors import OptionError
 from uplift.common.files import atomic_write
 from uplift.cube.data import CubeData
 from uplift.extras.colour.srgb import decode
-from uplift.extras.export.program import read_source
+from uplift.extras.export.source import read_source
 from uplift.extras.export.table_error import TableError, find_errors
 from uplift.lookup.cube import Cube
 from uplift.lookup.interpolate import around

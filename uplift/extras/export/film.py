@@ -47,7 +47,7 @@ from uplift.common.files import atomic_write, write_text
 from uplift.extras.colour.dominant import crossing
 from uplift.extras.colour.srgb import decode
 from uplift.extras.export.outputs import output_files
-from uplift.extras.export.program import read_source
+from uplift.extras.export.source import read_source
 from uplift.extras.files.outputs import check_outputs
 from uplift.lookup.cube import Cube
 

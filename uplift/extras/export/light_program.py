@@ -9,8 +9,9 @@ from uplift.common.errors import OptionError
 from uplift.extras.emission.discs import MIN_RADIUS, touched_bins
 from uplift.extras.emission.file import EmissionData, emission_digest
 from uplift.extras.emission.lattice import DENOMINATOR, ChromaticityLattice
-from uplift.extras.export.program import check_form, comment, compose, write_files
+from uplift.extras.export.program import check_form, compose, write_files
 from uplift.extras.export.program_table import Table, concatenate
+from uplift.extras.export.source import comment
 
 STYLES = ("c", "glsl")
 """Languages of `write_light_program`."""

@@ -15,8 +15,8 @@ from string import Template
 from uplift.common.arrays import StrPath
 from uplift.common.files import write_text
 from uplift.cube.file import VERSION
-from uplift.extras.export.program import read_source
 from uplift.extras.export.runtime import HEADER, SPARSE, compose_header
+from uplift.extras.export.source import read_source
 
 MODULE = "uplift.js"
 SOURCE = "module.c"

@@ -5,7 +5,7 @@ number of coefficients, and of the reader of files in ``source/runtime/``.
 """
 
 import re
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from itertools import product
 from pathlib import Path
@@ -15,8 +15,9 @@ from typing import Any
 from uplift.common.arrays import StrPath
 from uplift.common.files import write_text
 from uplift.cube.file import FEATURES, VERSION
-from uplift.extras.export.program import LANGUAGES, literal, read_source
+from uplift.extras.export.program import LANGUAGES, read_calls
 from uplift.extras.export.program_table import MOVES, TEXEL
+from uplift.extras.export.source import literal, read_source
 from uplift.models.moments import MAX_COUNT, WARPS
 
 HEADER = "uplift.h"
@@ -86,14 +87,10 @@ SPARSE = [
 enough for every cube.
 """
 KERNELS = SIGMOIDS + MOMENTS + SPARSE
-READER = ("file.c", "content.c", "table.c", "build.c")
-"""Parts of the reader in reading order."""
 ROUNDS = 64
 """Steps of SHA-256 for a block."""
 PER_LINE = 8
 NUMBERS_OF_WARP = 6
-SKIPPED = "#ifdef UP_VEC4"
-"""Begins a part of the source for shaders."""
 
 
 def write_header(path: StrPath, *, force: bool = False) -> None:
@@ -103,32 +100,20 @@ def write_header(path: StrPath, *, force: bool = False) -> None:
 
 def compose_header(kernels: Sequence[Kernel] = KERNELS) -> str:
     """Compose the header of its parts, with the lookups of some kernels."""
-    reader = "".join(read_source(f"runtime/{name}") for name in READER)
-    text = (
-        read_source("runtime/head.h")
-        + Template(reader).substitute(_reader_words())
-        + "\n"
-        + read_source("loops.c")
-        + read_source("host.c")
-        + _kernel_macros()
-        + "".join(_inclusions(kernels))
-        + Template(read_source("runtime/calls.c")).substitute(_call_words(kernels))
-        + "\n#ifdef UP_KERNEL\n\n"
-        + _kernel()
-        + "#endif\n"
-        + read_source("runtime/end.c")
-    )
-    text = re.sub(r"\bUP_", "UPLIFT_", text)
-    return Template(text).substitute(_head_words())
-
-
-def _head_words() -> dict[str, Any]:
-    return {
+    words = {
         "format": VERSION,
         "samples": SAMPLES,
         "count": MAX_COUNT,
         "width": LANGUAGES["c"].width,
+        "definitions": "\n".join(
+            f"#define UP_{name} {literal(value)}" for name, value in MOVES.items()
+        ),
+        "inclusions": "\n".join(map(_inclusion, kernels)),
+        "kernels": ",".join(map(_kernel_row, kernels)),
+        "kernel": _kernel(),
     }
+    text = Template(read_source("runtime/uplift.h")).substitute(words | _reader_words())
+    return re.sub(r"\bUP_", "UPLIFT_", text)
 
 
 def _reader_words() -> dict[str, Any]:
@@ -147,50 +132,31 @@ def _reader_words() -> dict[str, Any]:
     }
 
 
-def _call_words(kernels: Sequence[Kernel]) -> dict[str, Any]:
-    rows = []
-    for kernel in kernels:
-        kinds = (
-            kernel.is_sigmoid,
-            kernel.is_warped,
-            kernel.is_inexact,
-            kernel.is_sparse,
-        )
-        numbers = [kernel.count, *map(int, kinds)]
-        text = ", ".join(map(str, numbers))
-        rows.append(f"\n        {{{text}, &{kernel.name}_functions}}")
-    return {"kernels": ",".join(rows), "samples": SAMPLES}
-
-
-def _kernel_macros() -> str:
-    constants = "\n".join(
-        f"#define UP_{name} {literal(value)}" for name, value in MOVES.items()
+def _kernel_row(kernel: Kernel) -> str:
+    """Return the row of a kernel in the list from which one is chosen."""
+    kinds = (
+        kernel.is_sigmoid,
+        kernel.is_warped,
+        kernel.is_inexact,
+        kernel.is_sparse,
     )
-    return Template(read_source("runtime/kernel_macros.h")).substitute(
-        constants=constants
-    )
+    text = ", ".join(map(str, [kernel.count, *map(int, kinds)]))
+    return f"\n        {{{text}, &{kernel.name}_functions}}"
 
 
-def _inclusions(kernels: Sequence[Kernel]) -> Iterator[str]:
-    """Yield the lines by which the header includes itself for each kernel."""
-    for kernel in kernels:
-        lines = [f"#define UP_{key} {value}" for key, value in kernel.constants.items()]
-        yield "\n".join(["", *lines, "#include UPLIFT_FILE", ""])
+def _inclusion(kernel: Kernel) -> str:
+    """Return the lines by which the header includes itself for a kernel."""
+    lines = [f"#define UP_{key} {value}" for key, value in kernel.constants.items()]
+    return "\n".join(["", *lines, "#include UPLIFT_FILE"])
 
 
 def _kernel() -> str:
     """Return the lookup of exported programs, whose functions have the name of the
     kernel.
     """
-    lookup = read_source("cube.c").partition("${macros}\n")[2]
-    before, _, shaders = lookup.partition(SKIPPED)
-    after = shaders.partition("#endif\n")[2]
-    calls = read_source("cube_calls.c").partition(" */\n")[2]
-    calls = calls.rpartition("#if defined(__clang__)")[0]
-    text = (before + after).replace("${calls}", calls)
-    text = text.replace("up_number", "uplift_number")
-    text = re.sub(r"\bup_(\w+)", r"UP_NAME(\1)", text)
-    return text + read_source("runtime/kernel_end.c")
+    _, calls = read_calls("cube", ".c")
+    text = (read_source("cube.c") + calls).replace("up_number", "uplift_number")
+    return re.sub(r"\bup_(\w+)", r"UP_NAME(\1)", text)
 
 
 def _words_of_hash(words: Iterable[int]) -> str:

@@ -1,7 +1,7 @@
 """Programs in C, GLSL and HLSL that mix measured paints at the few wavelengths that
 suffice.
 
-The wavelengths are those that `uplift.extras.scene.wavelengths` chooses for mixtures
+The wavelengths are those that `uplift.extras.papers.wavelengths` chooses for mixtures
 of the paints; the weights from reflectances to linear sRGB are fitted to mixtures, and
 judged by others.
 """
@@ -19,9 +19,10 @@ from uplift.common.arrays import Array
 from uplift.common.errors import unknown_name
 from uplift.common.files import write_text
 from uplift.common.version import version
-from uplift.extras.export.program import comment, identifier, literal
+from uplift.extras.export.source import comment, identifier, literal
 from uplift.extras.paint.paints import Paints
-from uplift.extras.scene.wavelengths import choose, make_setup
+from uplift.extras.papers.wavelengths.choice import choose
+from uplift.extras.papers.wavelengths.sampling import make_setup
 
 COUNT = 8
 """Wavelengths of a program."""

@@ -23,6 +23,7 @@ from uplift.colorimetry.sensor import Light
 from uplift.common.arrays import Array, Values
 from uplift.cube.data import CubeData
 from uplift.extras.export.program import write_program
+from uplift.extras.timing import stopwatch
 from uplift.lab.method import (
     Method,
     NotInstalledError,
@@ -33,7 +34,6 @@ from uplift.lab.method import (
     ours,
 )
 from uplift.lab.runner import Prepare, Task
-from uplift.lab.timing import stopwatch
 from uplift.lookup.cube import Cube, load
 from uplift.lookup.interpolate import MODES
 from uplift.models.moments import Moments

@@ -21,8 +21,8 @@ from uplift.common.arrays import Array, Complex
 from uplift.common.errors import AtlasError, OptionError
 from uplift.common.progress import ProgressCallback, ignore_progress, reported
 from uplift.extras.colour.light_sets import REPORT_LIGHTS
+from uplift.extras.papers.representations import samples
 from uplift.extras.report.measures import delta_e_under, rms_difference
-from uplift.extras.scene.representations import samples
 from uplift.lab.runner import Row, named_lights
 from uplift.lab.study.unmirrored import fourier_basis, try_complex_multipliers
 from uplift.models import duality
@@ -116,7 +116,7 @@ class MomentsStudy:
     """Errors of every entry for every technique and number of moments.
 
     ``names``, ``atlases``: names and atlases of the E entries. ``measured`` (E, N):
-    reflectances at `uplift.extras.scene.representations.samples.wavelengths`.
+    reflectances at `uplift.extras.papers.representations.samples.wavelengths`.
     ``errors`` (T, max_moments + 1, E, len(MEASURES)): errors, by the order of the
     techniques and by moments from 0.
     """

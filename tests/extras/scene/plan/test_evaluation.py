@@ -12,8 +12,8 @@ from uplift.colorimetry import observer
 from uplift.colorimetry.delta_e import delta_e_spectra
 from uplift.common.errors import TextureError, UpliftWarning
 from uplift.common.progress import ignore_progress
+from uplift.extras.papers.wavelengths.sampling import make_setup
 from uplift.extras.scene.plan.evaluation import WORST_DELTA_E, EvaluationSet, renderings
-from uplift.extras.scene.wavelengths import make_setup
 from uplift.extras.texture.scene_colours import Images, sample_colours
 
 LIGHTS = ("D65", "FL11")

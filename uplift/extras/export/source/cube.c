@@ -1,23 +1,3 @@
-/* A spectral uplifting cube: linear RGB in, reflectances out, in single precision.
-
-   Written by uplift ${version} from the cube ${digest}.
-   RGB is linear ${space} under ${illuminant} for the ${observer}; ${entries} atlas entries. Mode ${mode}.
-
-   ${overview} */
-${macros}
-#ifdef UP_VEC4
-
-/* Copy the row of a lattice point or entry: UP_COUNT numbers of a spectrum, and the tag of a point, filled up with 0. */
-void up_load_row(int index, inout float row[UP_STRIDE])
-{
-    for (int t = 0; t < UP_STRIDE / 4; ++t) {
-        UP_VEC4 texel = up_texel(index * (UP_STRIDE / 4) + t);
-        for (int c = 0; c < 4; ++c) row[4 * t + c] = texel[c];
-    }
-}
-
-#endif
-
 /* Position of the list of entries whose boxes touch the cell above a lattice point, 0 for none; it is negative where
    answers in the cell are moved. Its fraction is 1/2 at points where coefficients are moved, 0 at others. */
 UP_FUNCTION float up_tag(UP_READS int index)
@@ -695,4 +675,3 @@ UP_FUNCTION void up_answer(
 UP_ALIASES
 #endif
 
-${calls}

@@ -17,6 +17,7 @@ from uplift.colorimetry import observer
 from uplift.colorimetry.illuminants import Illuminant, Lamp
 from uplift.common.arrays import Array
 from uplift.common.errors import unknown_name
+from uplift.extras.files.spec import SPEC, Matrix, NotNegative, NotNegativeRow
 from uplift.extras.scene.passes.bands import Bands
 from uplift.extras.scene.passes.spectra_digest import power_digest
 
@@ -41,12 +42,14 @@ class PassesLight:
         lights and by that of this light.
     """
 
+    __pydantic_config__ = SPEC
+
     name: str
     digest: str
-    numbers: Array
-    to_xyz: Array
-    errors: Array
-    own_errors: Array
+    numbers: NotNegativeRow
+    to_xyz: Matrix
+    errors: NotNegativeRow
+    own_errors: NotNegativeRow
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,9 +68,11 @@ class PassesCamera:
         materials.
     """
 
+    __pydantic_config__ = SPEC
+
     name: str
-    matrix: Array
-    error: float
+    matrix: Matrix
+    error: NotNegative
 
 
 @dataclass(frozen=True, eq=False)

@@ -14,13 +14,15 @@ from uplift.colorimetry.observer import DEFAULT_OBSERVER, illuminant_spd
 from uplift.common.arrays import Array, Indices, Mask
 from uplift.common.errors import OptionError
 from uplift.common.progress import Progress, ProgressCallback
-from uplift.extras.scene.representations import (
-    Representation,
-    all_representations,
-    samples,
+from uplift.extras.papers.representations import samples
+from uplift.extras.papers.representations.registry import all_representations
+from uplift.extras.papers.representations.samples import Representation
+from uplift.extras.papers.wavelengths.choice import choose
+from uplift.extras.papers.wavelengths.sampling import (
+    RenderSetup,
+    Sampling,
+    interp_curves,
 )
-from uplift.extras.scene.wavelengths import Sampling, choose
-from uplift.extras.scene.wavelengths.sampling import RenderSetup, interp_curves
 from uplift.lookup.cube import Cube
 
 WORST_DELTA_E = 100.0

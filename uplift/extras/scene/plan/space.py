@@ -23,6 +23,7 @@ from uplift.common.progress import Progress, ProgressCallback
 from uplift.cube.file import contents
 from uplift.cube.schema import POINTS
 from uplift.extras import texture
+from uplift.extras.papers.wavelengths.sampling import make_setup
 from uplift.extras.scene.plan.candidates import (
     INDEX,
     PIXELS,
@@ -40,7 +41,6 @@ from uplift.extras.scene.plan.evaluation import (
     renderings,
 )
 from uplift.extras.scene.plan.files import SceneFile
-from uplift.extras.scene.wavelengths import make_setup
 from uplift.extras.texture.scene_colours import (
     ColourSet,
     Images,

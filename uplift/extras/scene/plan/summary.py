@@ -18,7 +18,7 @@ from uplift.extras.scene.plan.candidates import INDEX, Candidate, Cost, cheapest
 from uplift.extras.scene.plan.files import FORMAT, SUFFIX, SceneFile, cube_name
 from uplift.extras.scene.plan.passes_advice import PassesAdvice
 from uplift.extras.scene.plan.planning import Plan, cost_text
-from uplift.extras.texture.uplifter import Spectrum
+from uplift.extras.texture.encodings import Spectrum
 
 HEADINGS = ("ΔE00", "memory", "time", "samples", "cube", "traced", "pixel")
 CLEARLY_SMALLER = 0.95

@@ -29,7 +29,7 @@ UP_EXPANDED float uplift_number(const uplift_cube *cube, int index)
 
 #define UP_SPECTRA 1
 #define UP_BIN_COUNT 1024
-${constants}
+${definitions}
 #define UP_DIM cube->dim
 #define UP_ENTRIES cube->entries
 #define UP_NODES cube->nodes
