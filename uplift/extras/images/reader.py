@@ -76,8 +76,9 @@ class Reader(ABC):
     @property
     def settings(self) -> dict[str, str]:
         """Description for the header of textures."""
-        space = {} if self.space is None else {"space": self.space}
-        return {"encoding": self.encoding, **space}
+        names = ("encoding", "out_of_gamut", "space")
+        values = {name: getattr(self, name, None) for name in names}
+        return {name: value for name, value in values.items() if value is not None}
 
     def channels(self, found: ColourChannels) -> ColourChannels:
         """How the colour channels that a part has are read: by default as found."""
@@ -208,12 +209,6 @@ class SurfaceReader(Reader):
     def __post_init__(self) -> None:
         super().__post_init__()
         check_method(self.out_of_gamut)
-
-    @property
-    def settings(self) -> dict[str, str]:
-        """Description for the header of textures."""
-        encoding, *space = super().settings.items()
-        return dict([encoding, ("out_of_gamut", self.out_of_gamut), *space])
 
     def decoder(self, part: Part) -> "Decoder":
         """Make the decoder of a part.
