@@ -109,16 +109,16 @@ class TextureSettings:
         encoding = self.pixel_encoding
         if self.emission:
             at = getattr(encoding, "wavelengths", None)
-            return prepare_lights(load_emission(self.cubes[0]), at, **self.reading)
+            return prepare_lights(load_emission(self.cubes[0]), at, **self._shared)
         uplifters = [
             prepare(
                 cube,
                 encoding,
                 out_of_gamut=self.out_of_gamut,
                 errors=self.errors,
-                **self.reading,
+                **self._shared,
             )
-            for cube in self.load_cubes()
+            for cube in self._load_cubes()
         ]
         mask = None if self.mask is None else Path(self.mask)
         if self.also is not None:
@@ -133,12 +133,12 @@ class TextureSettings:
         return uplifters[0] if mask is None else prepare_masked(uplifters, mask)
 
     @property
-    def reading(self) -> dict[str, Any]:
+    def _shared(self) -> dict[str, Any]:
         """What all converters have in common."""
         names = ("depth", "encoding", "space", "threads")
         return {name: getattr(self, name) for name in names}
 
-    def load_cubes(self) -> list[Cube]:
+    def _load_cubes(self) -> list[Cube]:
         """Load the cubes, with all nodes if those of a scene are to be added."""
         cubes = [load_cube(path) for path in self.cubes]
         if self.fill_missing:

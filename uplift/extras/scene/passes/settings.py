@@ -37,14 +37,14 @@ class PassSettings(TextureSettings):
         passes = read_passes(self.passes)
         if self.emission:
             table = load_emission(self.cubes[0])
-            return prepare_light_pass(table, passes, self.number, **self.reading)
-        (cube,) = self.load_cubes()
+            return prepare_light_pass(table, passes, self.number, **self._shared)
+        (cube,) = self._load_cubes()
         return prepare_pass(
             cube,
             passes,
             self.number,
             out_of_gamut=self.out_of_gamut,
-            **self.reading,
+            **self._shared,
         )
 
 
