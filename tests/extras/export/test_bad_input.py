@@ -46,7 +46,6 @@ def cubes(small_cube):
         (write_film, "cube", "a.npy", {"res": 1}, OptionError),
         (write_film, "cube", "a.npy", {"light": "moonlight"}, UnknownNameError),
         (write_film, "cube", "a.npy", {"res": 4}, OutputError),
-        (write_light_program, "lights", "a.h", {"style": "hlsl"}, OptionError),
         (
             write_light_program,
             "lights",

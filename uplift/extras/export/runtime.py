@@ -114,9 +114,16 @@ PER_LINE = 8
 NUMBERS_OF_WARP = 6
 
 
-def write_header(path: StrPath, *, force: bool = False) -> None:
+def export(_: None, path: Path, style: str, *, force: bool) -> str:
+    """Write the header."""
+    return write_header(path, force=force)
+
+
+def write_header(path: StrPath, *, force: bool = False) -> str:
     """Write ``uplift.h``, the reader of cube files for programs in C and C++."""
-    write_text(compose_header(), Path(path), force=force)
+    text = compose_header()
+    write_text(text, Path(path), force=force)
+    return f"reads cube files in C and C++, {len(text) / 1e3:.0f} kB"
 
 
 def compose_header(kernels: Sequence[Kernel] = KERNELS) -> str:
