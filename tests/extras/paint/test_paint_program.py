@@ -14,10 +14,10 @@ from uplift.colorimetry import observer
 from uplift.colorimetry.delta_e import delta_e_rgb
 from uplift.common.errors import OptionError, OutputError, UnknownNameError
 from uplift.extras.colour.srgb import decode, encode
+from uplift.extras.export.registry import PAINT_EXPORTS
 from uplift.extras.paint.paint_exports import (
     HIDDEN,
     LUT_SIZE,
-    PAINT_EXPORTS,
     export_lut,
     hiding_thickness,
 )

@@ -1,7 +1,5 @@
 """The formats that paints are exported in: one function each."""
 
-from collections.abc import Callable
-from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -109,34 +107,3 @@ def export_page(paints: Paints, path: Path, style: str, *, force: bool) -> str:
     """Write a page with the paints as tubes, which mixes them and finds recipes."""
     write_page(paints, path, force=force)
     return f"page of {pluralise(len(paints), 'paint')}"
-
-
-@dataclass(frozen=True)
-class PaintExport:
-    """A format that paints are written in.
-
-    Parameters
-    ----------
-    suffix : str
-        Suffix of its files.
-    about : str
-        What it is, for the help.
-    write : callable
-        Takes the paints, a path, the name of the format and ``force``, and returns a
-        line about what it wrote.
-    """
-
-    suffix: str
-    about: str
-    write: Callable[..., str]
-
-
-PROGRAM = ("program that mixes the paints at a few wavelengths", export_program)
-PAINT_EXPORTS = {
-    "c": PaintExport(".h", *PROGRAM),
-    "glsl": PaintExport(".glsl", *PROGRAM),
-    "hlsl": PaintExport(".hlsl", *PROGRAM),
-    "cube": PaintExport(".cube", "table of two paints on grey grounds", export_lut),
-    "html": PaintExport(".html", "page that mixes the paints", export_page),
-}
-"""The formats by name."""
