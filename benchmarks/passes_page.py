@@ -10,14 +10,10 @@ import numpy as np
 
 from uplift.colorimetry import observer
 from uplift.common.arrays import Array
-from uplift.common.errors import OptionError
 from uplift.extras.colour.light_sets import DESCRIPTIONS
 from uplift.extras.pages.html import render, resource
 from uplift.extras.scene.passes.passes import Passes
 
-PATCHES = 24
-"""Materials of the room: those of a ColorChecker, in its order."""
-PASSES = 2
 SIZE = 400
 """Rows and columns of the picture."""
 SCRIPTS = (
@@ -28,37 +24,9 @@ SCRIPTS = (
 
 
 def page(passes: Passes, reflectances: Array, size: int = SIZE) -> str:
-    """Render the page.
-
-    Parameters
-    ----------
-    passes : Passes
-        Two passes. The first of their lights is mixed with one of the others.
-    reflectances : ndarray, shape (24, 81)
-        Measured reflectances of a ColorChecker at 380, 385, …, 780 nm.
-    size : int
-        Rows and columns of the picture.
-
-    Returns
-    -------
-    str
-        A page that needs no other file.
-
-    Raises
-    ------
-    OptionError
-        The passes are not two with at least two lights, or the materials are not 24.
+    """Render the page of two passes, of whose lights the first is mixed with one of the
+    others, and of the reflectances (24, 81) of a ColorChecker.
     """
-    if passes.count != PASSES or len(passes.lights) < 2:
-        raise OptionError(
-            f"the page needs two passes with two lights or more, got {passes.count} "
-            f"with {len(passes.lights)}"
-        )
-    if len(reflectances) != PATCHES:
-        raise OptionError(
-            f"materials must be the {PATCHES} of a ColorChecker, got "
-            f"{len(reflectances)}"
-        )
     names = [light.name for light in passes.lights]
     return render(
         "extras/scene/passes/templates/browser_page.html.j2",
