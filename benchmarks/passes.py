@@ -21,6 +21,7 @@ from uplift.common.arrays import Array
 from uplift.common.files import write_text
 from uplift.extras import texture
 from uplift.extras.colour.light_sets import PALETTE_LIGHTS
+from uplift.extras.images.converter import Converter
 from uplift.extras.papers.palette.factor import factor_model
 from uplift.extras.papers.wavelengths.choice import choose
 from uplift.extras.papers.wavelengths.sampling import grid, make_setup
@@ -29,7 +30,6 @@ from uplift.extras.scene.passes.bands import CHANNELS, Bands
 from uplift.extras.scene.passes.choice import judging_paths
 from uplift.extras.scene.passes.materials import Materials
 from uplift.extras.scene.passes.passes import Passes
-from uplift.extras.texture.uplifter import Converter
 from uplift.extras.timing import time_call
 from uplift.fit.families import shipped_library
 from uplift.samples import sample_path

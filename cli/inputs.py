@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from uplift.colorimetry.sensor import Sensor
     from uplift.common.arrays import Array
     from uplift.extras.colour.spaces import ImageSpace
-    from uplift.extras.texture.picture import Picture
+    from uplift.extras.images.picture import Picture
 
 LOCAL = "atlases/*.txt"
 DEFAULT_ATLASES = f"{LOCAL} if there are any, or else the shipped atlases"
@@ -91,15 +91,13 @@ def _expand(source: str) -> list[str]:
 
 
 def read_pictures(
-    paths: Sequence[str], sensor: Sensor, *, space: str | None = None, **options: str
+    paths: Sequence[str], sensor: Sensor, **options: str | None
 ) -> list[Picture]:
     """Return images, reduced to `MAX_SIDE`, and emit their warnings."""
-    from uplift.extras.texture.picture import read_picture
+    from uplift.extras.images.picture import read_picture
 
-    stated = None if space is None else find_input_space(space)
     pictures = [
-        read_picture(path, sensor, max_side=MAX_SIDE, space=stated, **options)
-        for path in paths
+        read_picture(path, sensor, max_side=MAX_SIDE, **options) for path in paths
     ]
     for picture in pictures:
         warn(picture.warnings)

@@ -244,7 +244,7 @@ def command(
         stated = _surface(**surface)
     medium = Medium(thickness, stated, law, plate is not None)
     if over is not None and output is not None:
-        looks = {"encoding": encoding, "out_of_gamut": method, "space": resolver.space}
+        looks = {"encoding": encoding, "out_of_gamut": method, "space": input_space}
         _paint(recipe, medium, scattering, over, output, force=force, **looks)
         return
     backing = None

@@ -33,8 +33,8 @@ from ..startup import enable_jit_cache
 if TYPE_CHECKING:
     from uplift.common.arrays import Array
     from uplift.extras.texture.conversion import Conversion
+    from uplift.extras.texture.encodings import PixelEncoding
     from uplift.extras.texture.sequence import Job, Outcome
-    from uplift.extras.texture.uplifter import PixelEncoding
 
 
 def _check_scheduler(address: str) -> None:

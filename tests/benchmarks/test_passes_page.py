@@ -12,10 +12,12 @@ import pytest
 from benchmarks.passes_page import page
 from tests.browsing import check_page, shared_tab
 from tests.conftest import MACBETH
+from tests.helpers import raises
 from uplift.atlas.resampling import on_grid
 from uplift.atlas.sources import read_atlas
 from uplift.colorimetry import observer
 from uplift.colorimetry.delta_e import delta_e_2000, lab
+from uplift.common.errors import OptionError
 from uplift.extras.scene.passes.bands import PRESETS
 from uplift.extras.scene.passes.choice import fit_bands
 from uplift.extras.scene.passes.materials import library_materials
@@ -31,9 +33,20 @@ def checker():
 
 
 @pytest.fixture(scope="module")
-def html(checker):
+def library():
+    """Materials of the shipped sets."""
+    return library_materials()
+
+
+@pytest.fixture(scope="module")
+def passes(library):
+    """Two passes of three lights."""
+    return fit_bands(PRESETS[2], library, LIGHTS)
+
+
+@pytest.fixture(scope="module")
+def html(passes, checker):
     """A small page."""
-    passes = fit_bands(PRESETS[2], library_materials(), LIGHTS)
     return page(passes, checker, SIZE)
 
 
@@ -54,6 +67,15 @@ def test_numbers_of_the_page_decode(html, checker):
         expected = checker @ light.xyz.T
         errors = delta_e_2000(lab(decoded, light.white), lab(expected, light.white))
         assert errors.mean() < 1
+
+
+def test_other_passes_are_refused(library, checker, passes):
+    with raises(OptionError):
+        page(fit_bands(PRESETS[1], library, LIGHTS), checker)
+    with raises(OptionError):
+        page(fit_bands(PRESETS[2], library, LIGHTS[:1]), checker)
+    with raises(OptionError):
+        page(passes, checker[:23])
 
 
 @pytest.fixture(scope="module")

@@ -303,7 +303,7 @@ wavelengths --count 4 --atlas paints.xlsx --plot x.png
 """,
 }
 """Commands by the optional package that they need."""
-GROUPS = ("lights", "paints", "passes", "study")
+GROUPS = ("lab", "lights", "paints", "passes", "study")
 WITHOUT_ROWS = {
     "check": "checks all cubes that it can read",
     "export": "writes one file as its last act",

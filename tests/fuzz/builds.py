@@ -277,7 +277,9 @@ def _colour_laws(cube: uplift.Cube, rgb: Array, folder: Path) -> Iterator[str]:
     yield from _command_laws(rgb, off, expected, folder)
     for mode in ("spectra", "moments") if shutil.which("cc") else ():
         yield from _program_laws(cube, mode, rgb)
-    stored = texture.prepare(cube, texture.Spectrum(AT)).sample(rgb.astype(np.float32))
+    stored = texture.prepare(cube, texture.Spectrum(AT)).pixels.sample(
+        rgb.astype(np.float32)
+    )
     difference = np.abs(stored - expected).max()
     if difference > 1e-5:
         yield f"textures of spectra differ by {difference:.1e}"

@@ -10,6 +10,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 from tests.extras.texture.conftest import channels, planes, read_channels, write_exr
 from tests.helpers import raises, warns
 from uplift.common.errors import ColourError, OptionError
+from uplift.extras.images.counts import Counts
 from uplift.extras.paint.coats import (
     DARKEST,
     Ingredients,
@@ -204,11 +205,7 @@ def test_painted_colours_are_those_of_the_coated_spectra(small_cube, image, tmp_
     write_exr(tmp_path / "in.exr", {**planes(image), "mask": mask})
     painter = overpainter(small_cube, glaze, {"of": "red"}, threads=1)
     result = convert(painter, tmp_path / "in.exr", tmp_path / "out.exr")
-    assert (result.counts.pixels, result.counts.painted_outside, result.warnings) == (
-        30,
-        0,
-        (),
-    )
+    assert (result.counts, result.warnings) == (Counts(30), ())
     expected = small_cube.data.sensor.rgb(glaze.over(small_cube.reflectance(image)))
     assert_allclose(read_channels(tmp_path / "out.exr", "RGB"), expected, atol=2e-6)
     assert_array_equal(channels(tmp_path / "out.exr")["mask"], mask)
@@ -229,8 +226,8 @@ def test_pixels_outside_are_mapped_before_and_after_with_warnings(
         tmp_path / "in.exr",
         tmp_path / "out.exr",
     )
-    assert 0 < result.counts.outside < 30
-    assert result.counts.painted_outside > 0
+    assert 0 < result.counts["pixels-out-of-gamut"] < 30
+    assert result.counts["painted-pixels-out-of-gamut"] > 0
     assert [each.code for each in result.warnings] == [
         "pixels-out-of-gamut",
         "painted-pixels-out-of-gamut",

@@ -1,6 +1,7 @@
 """Textures from photographs under several lights."""
 
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -20,6 +21,7 @@ from uplift.extras.photographs.answers import prepare
 from uplift.extras.photographs.chart import homography
 from uplift.extras.photographs.fit import estimate_noise, shift
 from uplift.extras.photographs.photograph import Noise, photograph
+from uplift.extras.texture.encodings import spectral_channels
 from uplift.extras.texture.sequence import Job, TextureSettings, is_complete, run
 from uplift.lookup.node_table import prepare_products
 
@@ -62,7 +64,7 @@ def converter(cube, further, path, kind=None, **options):
     made = texture.prepare_several_lights(
         [uplifter], kind, further, threads=1, **options
     )
-    return replace(made, paths=(path,))
+    return partial(texture.convert, made, also=(path,))
 
 
 def under(light, **settings):
@@ -70,9 +72,7 @@ def under(light, **settings):
 
 
 def spectra_of(path):
-    return read_channels(
-        path, texture.uplifter.spectral_channels("T", np.array(WAVELENGTHS))
-    )
+    return read_channels(path, spectral_channels("T", np.array(WAVELENGTHS)))
 
 
 def test_a_relit_picture_gives_the_spectra_back(plain_cube, day, tmp_path):
@@ -85,7 +85,7 @@ def test_a_relit_picture_gives_the_spectra_back(plain_cube, day, tmp_path):
     )
     write_exr(tmp_path / "a.exr", planes(relit.astype(np.float32)))
     made = converter(plain_cube, under("A"), tmp_path / "a.exr")
-    conversion = texture.convert(made, day, tmp_path / "two.exr")
+    conversion = made(day, tmp_path / "two.exr")
     assert "exposure × 1 " in conversion.facts[0]
     plain = texture.prepare(plain_cube, texture.Spectrum(), depth="float", threads=1)
     texture.convert(plain, day, tmp_path / "one.exr")
@@ -101,7 +101,7 @@ def test_textures_come_nearer_to_the_materials(scene, plain_cube, day, tmp_path,
     picture = photograph_of(scene, lit, exposure=1.3, noise=noise)
     write_exr(tmp_path / "a.exr", planes(picture))
     made = converter(plain_cube, under("A"), tmp_path / "a.exr")
-    conversion = texture.convert(made, day, tmp_path / "two.exr")
+    conversion = made(day, tmp_path / "two.exr")
     factor = float(conversion.facts[0].split()[3])
     assert factor == pytest.approx(1.3, rel=0.01)
     assert "shift 0.0" in conversion.facts[0]
@@ -129,7 +129,7 @@ def test_texture_and_python_agree(scene, plain_cube, day, tmp_path):
         (texture.FurtherPicture("A", exposure=1.0),), noise=(0.002, 0.0002)
     )
     made = converter(plain_cube, further, tmp_path / "a.exr")
-    texture.convert(made, day, tmp_path / "two.exr")
+    made(day, tmp_path / "two.exr")
     prepared = prepare(
         plain_cube, [photograph(plain_cube.data.sensor, "A")], (0.002, 0.0002)
     )
@@ -143,9 +143,9 @@ def test_coefficients_have_the_exact_colours(scene, plain_cube, day, tmp_path, k
     lit = observer.sensor("sRGB", "A")
     write_exr(tmp_path / "a.exr", planes(photograph_of(scene, lit)))
     made = converter(plain_cube, under("A"), tmp_path / "a.exr", kind)
-    texture.convert(made, day, tmp_path / "two.exr")
+    made(day, tmp_path / "two.exr")
     model = plain_cube.data.model
-    names = [name for name in made.channels if name != "contradiction"]
+    names = [name for name in made.args[0].channels if name != "contradiction"]
     numbers = read_channels(tmp_path / "two.exr", names).reshape(-1, model.count)
     if isinstance(kind, texture.Moments):
         numbers = model.from_storage(numbers)
@@ -164,7 +164,7 @@ def test_a_wrong_balance_is_doubted_by_greys(scene, plain_cube, day, tmp_path):
     write_exr(tmp_path / "a.exr", planes((scene @ lit.T).astype(np.float32)))
     for balance, is_doubted in (("light", True), ("none", False)):
         made = converter(plain_cube, under("A", balance=balance), tmp_path / "a.exr")
-        facts = texture.convert(made, day, tmp_path / f"{balance}.exr").facts
+        facts = made(day, tmp_path / f"{balance}.exr").facts
         assert ("check the balance" in facts[1]) == is_doubted
 
 
@@ -181,7 +181,7 @@ def test_raw_values_of_a_camera_are_in_no_space(scene, plain_cube, day, tmp_path
     answers = []
     for name in ("plain", "wide"):
         made = converter(plain_cube, further, tmp_path / f"{name}.exr")
-        texture.convert(made, day, tmp_path / f"{name}-two.exr")
+        made(day, tmp_path / f"{name}-two.exr")
         answers.append(spectra_of(tmp_path / f"{name}-two.exr"))
     assert_array_equal(*answers)
     rgb = np.clip(scene @ plain_cube.data.sensor.matrix.T, 0, 1)
@@ -214,8 +214,8 @@ def test_masks_mix_cubes(scene, plain_cube, small_cube, day, tmp_path):
         made = texture.prepare_several_lights(
             uplifters, kind, further, threads=1, **options
         )
-        made = replace(made, paths=(tmp_path / "a.exr",))
-        texture.convert(made, day, tmp_path / f"{name}.exr")
+        target = tmp_path / f"{name}.exr"
+        texture.convert(made, day, target, also=[tmp_path / "a.exr"])
         parts[name] = spectra_of(tmp_path / f"{name}.exr")
     half = SIZE // 2
     assert_allclose(parts["mixed"][:, :half], parts["plain"][:, :half], atol=1e-6)
@@ -234,7 +234,7 @@ def test_clipped_and_black_pixels_are_answered_by_the_first(
     write_image(tmp_path / "a.png", lit.astype(np.uint8))
     further = texture.FurtherPictures((texture.FurtherPicture("A", exposure=1.0),))
     made = converter(plain_cube, further, tmp_path / "a.png")
-    texture.convert(made, tmp_path / "day.png", tmp_path / "two.exr")
+    made(tmp_path / "day.png", tmp_path / "two.exr")
     planes_of = channels(tmp_path / "two.exr")
     rgb = np.stack([planes_of[name] for name in "RGB"], axis=-1)[:20]
     expected = plain_cube.reflectance(rgb)
@@ -250,8 +250,8 @@ def test_pictures_that_contradict_each_other_are_counted(plain_cube, tmp_path):
     write_exr(tmp_path / "a.exr", planes(other))
     further = texture.FurtherPictures((texture.FurtherPicture("A", exposure=1.0),))
     made = converter(plain_cube, further, tmp_path / "a.exr")
-    conversion = texture.convert(made, tmp_path / "day.exr", tmp_path / "two.exr")
-    assert conversion.counts.contradicting == 16
+    conversion = made(tmp_path / "day.exr", tmp_path / "two.exr")
+    assert conversion.counts["photographs-contradict"] == 16
     assert "photographs-contradict" in [note.code for note in conversion.warnings]
     flags = channels(tmp_path / "two.exr")["contradiction"]
     assert flags.sum() == 16
@@ -263,7 +263,7 @@ def test_shifted_pictures_are_refused_with_the_shift(scene, plain_cube, day, tmp
     write_exr(tmp_path / "a.exr", planes(np.roll(picture, (3, -2), axis=(0, 1))))
     made = converter(plain_cube, under("A"), tmp_path / "a.exr")
     with raises(TextureError, "photographs-not-aligned") as caught:
-        texture.convert(made, day, tmp_path / "two.exr")
+        made(day, tmp_path / "two.exr")
     assert "-2.0" in caught.value.problem
     assert "+3.0" in caught.value.problem
     assert not Path(tmp_path / "two.exr").exists()
@@ -325,15 +325,10 @@ def test_bad_input(plain_cube, day, tmp_path):
         tmp_path / "small.exr", planes(np.full((8, 8, 3), 0.5, np.float32))
     )
     with raises(TextureError, "photographs-of-different-sizes"):
-        texture.convert(
-            converter(plain_cube, under("A"), small), day, tmp_path / "two.exr"
-        )
+        converter(plain_cube, under("A"), small)(day, tmp_path / "two.exr")
     with raises(TextureError):
-        texture.convert(
-            converter(plain_cube, under("A"), tmp_path / "none.exr"),
-            day,
-            tmp_path / "two.exr",
-        )
+        made = converter(plain_cube, under("A"), tmp_path / "none.exr")
+        made(day, tmp_path / "two.exr")
     with raises(OptionError):
         converter(plain_cube, under("D65"), small)
     with raises(OptionError):
@@ -372,7 +367,7 @@ def test_a_chart_states_exposure_balance_and_noise(plain_cube, tmp_path):
     write_exr(tmp_path / "a.exr", planes(second.astype(np.float32)))
     further = under("A", chart=texture.ChartInPicture(CORNERS))
     made = converter(plain_cube, further, tmp_path / "a.exr")
-    facts = texture.convert(made, day, tmp_path / "two.exr").facts
+    facts = made(day, tmp_path / "two.exr").facts
     assert float(facts[0].split()[5]) == pytest.approx(0.8, rel=0.02)
     gains = np.array(facts[1].split()[5:8], dtype=float)
     assert_allclose(gains, np.array([1.3, 1.2, 1.0]) / 0.8, rtol=0.02)
@@ -394,7 +389,7 @@ def test_corners_that_are_turned_or_mirrored_are_refused(plain_cube, tmp_path, o
     chart = texture.ChartInPicture(tuple(corners.ravel()))
     made = converter(plain_cube, under("A", chart=chart), tmp_path / "a.exr")
     with raises(OptionError) as caught:
-        texture.convert(made, tmp_path / "day.exr", tmp_path / "two.exr")
+        made(tmp_path / "day.exr", tmp_path / "two.exr")
     if order != "0132":  # its sides cross
         assert caught.value.code == "chart-differs"
         assert ",".join(f"{number:g}" for number in CORNERS) in caught.value.hint
@@ -415,4 +410,4 @@ def test_charts_that_cannot_be_used_are_refused(plain_cube, day, tmp_path, chart
     write_exr(picture, planes(rgb))
     made = converter(plain_cube, under("A", chart=chart), picture)
     with raises(OptionError):
-        texture.convert(made, day, tmp_path / "two.exr")
+        made(day, tmp_path / "two.exr")

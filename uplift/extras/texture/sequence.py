@@ -5,7 +5,7 @@ import logging
 import os
 from collections.abc import Generator, Iterable, Iterator
 from concurrent.futures import BrokenExecutor, CancelledError, Executor, as_completed
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
@@ -24,15 +24,17 @@ from uplift.common.progress import ProgressCallback, ignore_progress
 from uplift.common.text import pluralise
 from uplift.extras.emission.lookup import load_emission
 from uplift.extras.files.outputs import check_folder, make_folder
+from uplift.extras.images import exr_file
+from uplift.extras.images.converter import Converter
+from uplift.extras.images.image import open_image
 from uplift.extras.images.processes import TiedProcesses
-from uplift.extras.texture import exr_file
 from uplift.extras.texture.conversion import SOURCE, Conversion, convert, source_stamp
 from uplift.extras.texture.emission import prepare_lights
-from uplift.extras.texture.image import open_image
+from uplift.extras.texture.encodings import PixelEncoding, Spectrum
 from uplift.extras.texture.mask import prepare_masked
 from uplift.extras.texture.photographs import FurtherPictures
 from uplift.extras.texture.several_lights import prepare_several_lights
-from uplift.extras.texture.uplifter import Converter, PixelEncoding, Spectrum, prepare
+from uplift.extras.texture.uplifter import prepare
 from uplift.lookup.cube import load
 
 DASK_TIMEOUT = "10s"
@@ -147,11 +149,6 @@ class Job:
     resume: bool = False
     also: tuple[Path, ...] = ()
 
-    @property
-    def converter(self) -> Converter:
-        """The converter of the image."""
-        return replace(converter_for(self.settings), paths=self.also)
-
 
 @dataclass(frozen=True)
 class Failure:
@@ -218,9 +215,10 @@ def _run(job: Job, progress: ProgressCallback) -> Outcome:
         return Skipped(job.source)
     try:
         return convert(
-            job.converter,
+            converter_for(job.settings),
             job.source,
             job.target,
+            also=job.also,
             force=job.force,
             progress=progress,
         )

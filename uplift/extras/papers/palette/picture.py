@@ -15,8 +15,8 @@ from numpy.typing import NDArray
 from uplift.common.arrays import Array, StrPath, Values
 from uplift.common.errors import OptionError, TextureError, unknown_name
 from uplift.common.text import pluralise
-from uplift.extras.texture.channels import colour_channels
-from uplift.extras.texture.image import Part, open_image
+from uplift.extras.images.channels import colour_channels
+from uplift.extras.images.image import Part, open_image
 
 Weights = NDArray[np.float32]
 

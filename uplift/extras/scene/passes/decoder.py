@@ -15,9 +15,11 @@ from uplift.common.arrays import Array, Floats, Values
 from uplift.common.errors import OptionError
 from uplift.extras.colour.spaces import find_space
 from uplift.extras.images import exr
+from uplift.extras.images.counts import Counts
+from uplift.extras.images.reader import NOT_FINITE, REPLACED
+from uplift.extras.scene.passes.light_images import CLAMPED, NEGATIVE
 from uplift.extras.scene.passes.passes import Passes
 from uplift.extras.scene.passes.textures import ATTRIBUTE, pass_mark
-from uplift.extras.texture.colours import Counts
 
 XYZ = "XYZ"
 """Name of the space of undecoded tristimulus values."""
@@ -62,11 +64,9 @@ class Decoder:
         values = np.asarray(numbers, dtype=np.float32)
         finite = np.isfinite(values)
         negative = (values < 0).any(axis=-1) & finite.all(axis=-1)
-        counts = Counts(
-            pixels=values[..., 0].size,
-            not_finite=int((~finite).any(axis=-1).sum()),
-            negative=int(negative.sum()),
-        )
+        counts = Counts(values[..., 0].size)
+        counts += Counts.of(NOT_FINITE, (~finite).any(axis=-1).sum(), REPLACED)
+        counts += Counts.of(NEGATIVE, negative.sum(), CLAMPED)
         usable = np.clip(np.nan_to_num(values, nan=0.0), 0, LARGEST)
         return (usable @ self.matrix.T).astype(np.float32), counts
 

@@ -4,11 +4,11 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from uplift.extras.emission.lookup import load_emission
+from uplift.extras.images.converter import Converter
 from uplift.extras.scene.passes.file import read_passes
 from uplift.extras.scene.passes.light_images import prepare_light_pass
 from uplift.extras.scene.passes.textures import prepare_pass
 from uplift.extras.texture.sequence import TextureSettings
-from uplift.extras.texture.uplifter import Converter
 from uplift.lookup.cube import load
 
 

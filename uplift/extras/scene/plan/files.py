@@ -43,7 +43,7 @@ from uplift.extras.files.spec import (
     resolves,
     spec_folder,
 )
-from uplift.extras.texture.colours import check_encoding
+from uplift.extras.images.reader import check_encoding
 from uplift.extras.texture.scene_colours import Images
 from uplift.lookup.cube import Cube
 from uplift.pipeline.build import build
@@ -234,8 +234,8 @@ def _build_options(values: Any) -> dict[str, Any]:
                 raise unknown_name(name, known, "option")
         recorded = recorded_options(values)
         options = Options(**recorded)
-        observer.matching_functions(options.observer)
-        problem_of(options, options.observer, options.solver)
+        observer.matching_functions(str(options.observer))
+        problem_of(options)
     return recorded
 
 

@@ -72,7 +72,7 @@ class Builder:
     def cube(self, rgb: Array, options: Options) -> Cube:
         """Build a cube for linear RGB (n, 3)."""
         with warnings.catch_warnings(action="ignore", category=UpliftWarning):
-            options, problem = problem_of(options, options.observer, options.solver)
+            options, problem = problem_of(options)
             scene = ColourSet(rgb)
             return build_stages(
                 self.atlas, options, problem, scene=scene, learn=self._learn

@@ -1,14 +1,15 @@
 """Colour channels of an image: which they are, and their division by alpha."""
 
 import re
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import chain
 
 import numpy as np
 
 from uplift.common.arrays import Floats, Mask, Values
-from uplift.common.errors import TextureError
-from uplift.extras.texture.image import Image, Part
+from uplift.common.errors import OptionError, TextureError
+from uplift.extras.images.image import Image, Part
 
 COLOUR_TYPES = {"uint8", "uint16", "half", "float", "double"}
 BRIGHTEST = 65504.0
@@ -144,6 +145,12 @@ def colour_channels(part: Part) -> ColourChannels | None:
     )
 
 
+def is_xyz(part: Part) -> bool:
+    """Return whether the colours of a part are CIE XYZ."""
+    channels = colour_channels(part)
+    return channels is not None and channels.is_xyz
+
+
 def _colour_names(part: Part) -> tuple[list[str], str]:
     """Return the names of the colour channels, none if there are none, and the name of
     their alpha.
@@ -212,3 +219,17 @@ def coloured_parts(image: Image) -> list[tuple[Part, ColourChannels]]:
         for part, colours in colour_channels_by_part(image)
         if colours is not None
     ]
+
+
+def channel_names(lights: Sequence[str]) -> list[str]:
+    """Return the names of lights as parts of the names of channels. Raises
+    `OptionError` for two that become one name.
+
+    >>> channel_names(["FL3.1", "my lamp"])
+    ['FL3_1', 'my_lamp']
+    """
+    names = [re.sub(r"[^\w-]", "_", light) for light in lights]
+    if len(set(names)) < len(names):
+        problem = f"two lights have one name of a channel, got {', '.join(names)}"
+        raise OptionError(problem, hint="rename one of the lamps")
+    return names

@@ -13,8 +13,9 @@ import numpy as np
 from uplift.common.arrays import StrPath, Values
 from uplift.common.errors import OutputError, TextureError
 from uplift.common.files import atomic_write
-from uplift.extras.texture import exr_file
-from uplift.extras.texture.image import (
+from uplift.extras.images import exr_file
+from uplift.extras.images.counts import Counts
+from uplift.extras.images.image import (
     Attribute,
     Window,
     open_image,
@@ -33,6 +34,8 @@ COMPRESSION = "zip:1"
 in 2/3 of the time.
 """
 LARGEST_HALF = np.float32(65504)
+TOO_BRIGHT = "pixels-too-bright"
+CLAMPED = "brighter than half floats can store: clamped; use 32-bit channels"
 SPACE_MARGIN = 2
 """Factor by which the rest of an image may compress better than the rows written so
 far.
@@ -108,7 +111,7 @@ class Writer:
         )
         self._written = 0
         self._parts = parts
-        self._types = parts[0].types
+        self._part = parts[0]
         specs = tuple(self._specs) if len(self._specs) > 1 else self._specs[0]
         rows = max(part.rows_per_band for part in parts)
         with _compression_threads(rows // ROWS_PER_CHUNK):
@@ -120,29 +123,31 @@ class Writer:
 
     def start_part(self, number: int) -> None:
         """Start a part."""
-        self._types = self._parts[number].types
+        self._part = self._parts[number]
         if number:
             path = os.fspath(self._path)
             spec = self._specs[number]
             self._check(self._handle.open(path, spec, "AppendSubimage"))
 
-    def write_rows(self, first: int, values: Values) -> int:
-        """Write rows (k, width, channels) from row ``first``, and return how many
-        pixels have numbers that half floats cannot hold, in place of which the largest
-        ones are written; infinity stays. Raises `OSError`, and `OutputError` as
+    def write_rows(self, first: int, values: Values) -> Counts:
+        """Write rows (k, width, channels) from row ``first``, counted from 0.
+
+        In place of numbers that half floats cannot hold the largest ones are written,
+        and counted; infinity stays. Raises `OSError`, and `OutputError` as
         `_check_space`.
         """
-        is_half = np.array(self._types) == "half"
+        is_half = np.array(self._part.types) == "half"
         is_over = np.zeros(values.shape, dtype=bool)
         if not np.abs(values).max() <= LARGEST_HALF:
             is_over = is_half & np.isfinite(values) & (np.abs(values) > LARGEST_HALF)
             values = np.where(is_over, np.copysign(LARGEST_HALF, values), values)
         # OpenImageIO would convert floats to half floats in another array.
         rows = values.astype(np.float16) if is_half.all() else values
-        self._check(self._handle.write_scanlines(first, first + len(rows), 0, rows))
+        start = self._part.window.y + first
+        self._check(self._handle.write_scanlines(start, start + len(rows), 0, rows))
         self._written += values.size
         self._check_space()
-        return int(is_over.any(axis=-1).sum())
+        return Counts.of(TOO_BRIGHT, is_over.any(axis=-1).sum(), CLAMPED)
 
     def close(self) -> None:
         """Finish the file, check that all of it is there, and add its checksum. Raises

@@ -8,6 +8,7 @@ are upright: the orientation that EXIF, TIFF or HDR states is applied.
 import contextlib
 import itertools
 import os
+import time
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -21,8 +22,8 @@ from uplift.common.files import check_regular
 from uplift.common.machine import check_memory
 from uplift.common.text import pluralise
 from uplift.extras.colour.spaces import ImageSpace
-from uplift.extras.texture import exr_file, hdr_file, png_file, tiff_file
-from uplift.extras.texture.colour_profile import Profile, read_profile, xyz_space
+from uplift.extras.images.profile import Profile, read_profile, xyz_space
+from uplift.extras.images.statements import PNG, SIGNATURES, read_statements
 
 FORMATS = ("openexr", "hdr", "png", "jpeg", "tiff")
 MAX_BAND_BYTES = 1 << 25
@@ -32,17 +33,6 @@ UINT32_SCALE = 2**32 - 1
 MAX_EXACT_INTEGER = 1 << 24
 """Integers up to this number pass through 32-bit floats."""
 UNKNOWN_PROBLEM = "the image cannot be read"
-SIGNATURES = (
-    exr_file.MAGIC,
-    hdr_file.MAGIC,
-    png_file.SIGNATURE,
-    b"\xff\xd8",
-    b"II*\0",
-    b"MM\0*",
-    b"II+\0",
-    b"MM\0+",
-)
-"""First bytes of the formats."""
 PNG_INTERLACE = 28
 """Offset of the byte that marks an interlaced PNG file, which can only be decoded in
 one piece.
@@ -148,15 +138,14 @@ class Image:
     pixels: Values | None = None
 
     def bands(self, part: Part) -> Iterator[tuple[int, Values]]:
-        """Yield row numbers and rows (k, width, channels): integers if all channels
-        are, else floats.
+        """Yield the number of the first row, counted from 0, and rows (k, width,
+        channels): integers if all channels are, else floats.
         """
         window = part.window
         block = window.width * len(part.channels) * 4 * part.rows_per_block
         step = part.rows_per_block * max(1, MAX_BAND_BYTES // block)
         for first in range(0, window.height, step):
-            rows = self.rows(part, first, min(step, window.height - first))
-            yield window.y + first, rows
+            yield first, self.rows(part, first, min(step, window.height - first))
 
     def rows(self, part: Part, first: int, count: int) -> Values:
         """Read rows (count, width, channels) from row ``first`` of the window, as
@@ -181,6 +170,13 @@ class Image:
                 )
             values[..., index] = numbers / UINT32_SCALE
         return values
+
+    def date(self, part: Part) -> str:
+        """Return the date that a part states, else that of the file, as EXIF writes
+        it.
+        """
+        modified = time.gmtime(self.path.stat().st_mtime)
+        return part.date or time.strftime("%Y:%m:%d %H:%M:%S", modified)
 
     def header_text(self, name: str) -> str:
         """Return a text attribute of the first part, empty if it is missing."""
@@ -214,6 +210,16 @@ class Image:
 
 
 @contextlib.contextmanager
+def errors_at(path: Path) -> Iterator[None]:
+    """Locate the errors of images and colours that have no path."""
+    try:
+        yield
+    except (TextureError, ColourError) as error:
+        error.path = path if error.path is None else error.path
+        raise
+
+
+@contextlib.contextmanager
 def open_image(path: StrPath) -> Iterator[Image]:
     """Open an image file. A `TextureError` or `ColourError` in the block without a path
     gets this one.
@@ -223,38 +229,20 @@ def open_image(path: StrPath) -> Iterator[Image]:
     or blocks of rows that do not fit into memory.
     """
     path = Path(path)
-    handle = None
-    try:
+    with contextlib.ExitStack() as stack:
+        stack.enter_context(errors_at(path))
         start = _read_start(path)
-        header = _read_header(path, start)
+        statements = read_statements(path, start)
         handle = _open(path)
-        parts = tuple(_parts(handle, header))
-        is_png = start.startswith(png_file.SIGNATURE)
-        is_interlaced = is_png and start[PNG_INTERLACE:] == b"\1"
+        stack.callback(handle.close)
+        parts = tuple(_parts(handle, statements))
+        is_interlaced = start.startswith(PNG) and start[PNG_INTERLACE:] == b"\1"
         orientation = _orientation(handle)
         for part in parts:
             _check_names(part)
             _check_block(part, is_whole=is_interlaced or orientation > 1)
         image = Image(path, parts, handle)
         yield _upright(image, orientation) if orientation > 1 else image
-    except (TextureError, ColourError) as error:
-        error.path = path if error.path is None else error.path
-        raise
-    finally:
-        if handle is not None:
-            handle.close()
-
-
-def _read_header(path: Path, start: bytes) -> Mapping[str, Any]:
-    """Read what OpenImageIO does not report of a file that begins with ``start``."""
-    if start.startswith(exr_file.MAGIC):
-        exr_file.check_size(path)
-        return {}
-    if start.startswith(png_file.SIGNATURE):
-        return png_file.read_chunks(path)
-    if start.startswith(hdr_file.MAGIC):
-        return hdr_file.read_primaries(path)
-    return tiff_file.read_tags(path)
 
 
 def _open(path: Path) -> Any:
@@ -311,14 +299,14 @@ def _read_start(path: Path) -> bytes:
     return start
 
 
-def _parts(handle: Any, header: Mapping[str, Any]) -> Iterator[Part]:
+def _parts(handle: Any, statements: Mapping[str, Any]) -> Iterator[Part]:
     if handle.format_name() not in FORMATS:
         raise TextureError(
             f"unsupported image format {handle.format_name()}", hint=FORMAT_HINT
         )
     number = 0
     while handle.seek_subimage(number, 0):
-        yield _part(handle.spec(), number, header)
+        yield _part(handle.spec(), number, statements)
         number += 1
         if handle.format_name() != "openexr":  # pages of a TIFF are separate images
             return
@@ -349,7 +337,7 @@ def _upright(image: Image, orientation: int) -> Image:
     return Image(image.path, (replace(part, window=window),), image.handle, pixels)
 
 
-def _part(spec: Any, number: int, header: Mapping[str, Any]) -> Part:
+def _part(spec: Any, number: int, statements: Mapping[str, Any]) -> Part:
     if spec.deep or spec.depth > 1:
         raise TextureError("an image must have one value per pixel", hint="flatten it")
     if spec.get_int_attribute("tiff:PhotometricInterpretation") in OTHER_COLOURS:
@@ -369,7 +357,7 @@ def _part(spec: Any, number: int, header: Mapping[str, Any]) -> Part:
         rows_per_block=spec.tile_height
         or max(spec.get_int_attribute("oiio:RowsPerChunk", 1), 1),
         is_tiled=bool(spec.tile_width),
-        profile=read_profile(spec, header),
+        profile=read_profile(spec, statements),
         date=date if _is_text(date) and date else None,
         metadata=_metadata(spec),
         has_associated_alpha=not spec.get_int_attribute("oiio:UnassociatedAlpha"),

@@ -1,21 +1,17 @@
 """An image as one array, reduced to a size that a screen shows."""
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
 from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Floats, Mask, StrPath, Values
 from uplift.common.errors import UpliftWarning
-from uplift.extras.colour.spaces import ImageSpace
-from uplift.extras.texture.channels import coloured_parts
-from uplift.extras.texture.colours import (
-    Counts,
-    check_encoding,
-    make_decoder,
-    space_warnings,
-)
-from uplift.extras.texture.image import Part, open_image
+from uplift.extras.images.channels import coloured_parts
+from uplift.extras.images.counts import Counts
+from uplift.extras.images.image import Part, open_image
+from uplift.extras.images.reader import SurfaceReader
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,41 +31,32 @@ class Picture:
 
 
 def read_picture(
-    path: StrPath,
-    sensor: Sensor,
-    *,
-    max_side: int,
-    encoding: str = "auto",
-    out_of_gamut: str = "clip",
-    space: ImageSpace | None = None,
+    path: StrPath, sensor: Sensor, *, max_side: int, **reading: Any
 ) -> Picture:
     """Read the first part of an image that has colours, at most ``max_side`` wide and
-    high.
+    high, by a `SurfaceReader` of these settings.
 
     Pixels of a larger image are averaged in linear RGB, weighted by alpha where the
     file holds colours multiplied by it. Warnings are returned, not emitted. Raises
     `TextureError`, `ColourError` and `OptionError` as `uplift.extras.texture.convert`.
     """
-    check_encoding(encoding)
+    reader = SurfaceReader(sensor=sensor, **reading)
     with open_image(path) as image:
         part, channels = coloured_parts(image)[0]
-        decode = make_decoder(sensor, part, encoding, out_of_gamut, space)
+        decode = reader.decoder(part)
         mean = _Reducer(part, max_side, 3)
         opacities = _Reducer(part, max_side, 1)
         shown = _Reducer(part, max_side, 1)
         counts = Counts()
         for first, band in image.bands(part):
             rgb, decoded = decode(channels.straight(band))
-            shown.add(first - part.window.y, channels.visible(band)[..., None])
+            shown.add(first, channels.visible(band)[..., None])
             opacity = channels.opacity(band)
             if opacity is not None:
-                opacities.add(first - part.window.y, opacity)
-            mean.add(first - part.window.y, rgb if opacity is None else rgb * opacity)
+                opacities.add(first, opacity)
+            mean.add(first, rgb if opacity is None else rgb * opacity)
             counts += decoded
-        warnings = (
-            *counts.warnings(out_of_gamut, path),
-            *space_warnings(image, sensor, space),
-        )
+        warnings = (*counts.warnings(path), *reader.warnings(image))
     visible = shown.result()[..., 0] > 0
     if channels.alpha is None:
         return Picture(mean.result(), None, mean.step, warnings, visible)

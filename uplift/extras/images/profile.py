@@ -15,11 +15,12 @@ from typing import Any
 import numpy as np
 
 from uplift.colorimetry.gamut import SRGB, Primaries
+from uplift.common.arrays import Array
 from uplift.common.errors import OptionError
 from uplift.common.files import atomic_write
 from uplift.extras.colour.spaces import ImageSpace, find_ocio_space
 from uplift.extras.colour.srgb import decode
-from uplift.extras.texture import code_points
+from uplift.extras.images import code_points
 
 NOT_STATED = ("", "unknown")
 """Values of colorInteropID that name no space."""
@@ -174,7 +175,7 @@ def _tiff_tags(header: Mapping[str, Any]) -> Iterator[Profile]:
         if name in header
     ]
     if "TransferFunction" in header:
-        curve = _table_curve(header["TransferFunction"])
+        curve = _table_curve(np.atleast_1d(header["TransferFunction"]))
     if names and names != ["TransferFunction"]:
         # One without the other is not a gamut.
         gamut = _primaries(
@@ -192,9 +193,9 @@ def _by_parts(
     return Profile(name, ImageSpace(name, gamut, curve))
 
 
-def _table_curve(numbers: tuple[float, ...]) -> code_points.Curve | None:
+def _table_curve(numbers: Array) -> code_points.Curve | None:
     """Return the curve of one or three tables of 16-bit numbers; None for others."""
-    tables = np.array(numbers, dtype=float) / 65535
+    tables = numbers / 65535
     is_triple = len(tables) in (3 << 8, 3 << 16)
     tables = tables.reshape(3, -1) if is_triple else np.tile(tables, (3, 1))
     count = tables.shape[1]
