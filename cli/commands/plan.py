@@ -17,9 +17,7 @@ FRONT = {
     "memory": "memory",
     "time": "time",
     "samples": "samples",
-    "cube": "cube",
-    "traced": "traced",
-    "pixel": "pixel",
+    "name": "choice",
 }
 
 
@@ -88,19 +86,13 @@ def command(
         for line in fields["lines"]:
             say(f"  {line}")
         say()
-        worst = result.confirmed.worst
         paragraph(f"{result.scene.path.name}: {result.chosen.name}")
-        paragraph(
-            f"{summary.verdict(result)} ({worst.group} under {worst.light}). "
-            f"{' '.join(summary.notes(result))}"
-        )
+        paragraph(f"{summary.verdict(result)}. {' '.join(summary.notes(result))}")
         say()
         formats: dict[str, Format] = {
-            "error": format_error,
+            "error": lambda error: format_error(error["quantile"]),
             "memory": format_size,
             "time": ",.0f",
         }
         Table(summary.front_rows(result), FRONT, formats=formats).print_text()
-        say()
-        paragraph(summary.describe_error(result))
     say(str(path), err=True)

@@ -155,9 +155,10 @@ def _fit(
     projection = projection / scale[:, None]
     own = grams.decodings(light_numbers)
     judged = judging_paths(materials, lights)
-    lit = judged.numbers(bands.weights) * light_numbers[:, None]
-    errors = judged.by_bounce(judged.errors(lit @ to_xyz.T))
-    own_errors = judged.by_bounce(judged.errors(lit @ own.mT))
+    errors, own_errors = (
+        judged.by_bounce(judged.decoding_errors(bands.weights, light_numbers, matrix))
+        for matrix in (to_xyz, own)
+    )
     described = []
     for row, light in enumerate(dict.fromkeys(lights)):
         described.append(
@@ -199,8 +200,7 @@ def path_errors(
     """
     judged = judging_paths(materials, lights)
     numbers = np.stack([light.numbers for light in passes.lights])
-    lit = judged.numbers(passes.bands.weights) * numbers[:, None]
-    return judged.errors(lit @ passes.to_xyz.T)
+    return judged.decoding_errors(passes.bands.weights, numbers, passes.to_xyz)
 
 
 def rgb_errors(materials: Materials, lights: Sequence[Illuminant]) -> Array:

@@ -34,24 +34,16 @@ SCENE_KEYS = ("tolerance", "quantile", "encoding", "minimise", "limits")
 
 def front_rows(plan: Plan) -> list[dict[str, Any]]:
     """The choice, and candidates whose error is clearly below that of all cheaper ones,
-    by what the scene minimises.
+    by what the scene minimises, as JSON values with a mark of the choice.
     """
     rows = []
     smallest = np.inf
     for candidate in cheapest_first(plan.measured, plan.scene.minimise):
         error = candidate.error.quantile
-        if candidate is plan.chosen or error < CLEARLY_SMALLER * smallest:
+        is_chosen = candidate is plan.chosen
+        if is_chosen or error < CLEARLY_SMALLER * smallest:
             smallest = min(smallest, error)
-            rows.append(
-                {
-                    "chosen": "→" if candidate is plan.chosen else "",
-                    "error": error,
-                    **candidate.cost._asdict(),
-                    "cube": candidate.cube_name,
-                    "traced": candidate.traced,
-                    "pixel": candidate.pixel.name,
-                }
-            )
+            rows.append({"chosen": "→" * is_chosen, **_candidate(candidate)})
     return rows
 
 
@@ -59,9 +51,10 @@ def verdict(plan: Plan) -> str:
     """Errors and tolerance in one phrase."""
     errors = plan.chosen.error.quantile, plan.confirmed.quantile
     predicted, confirmed = map(format_error, errors)
+    worst = plan.confirmed.worst
     text = (
         f"ΔE00 {predicted} predicted, {confirmed} confirmed on other pixels, tolerance "
-        f"{plan.scene.tolerance:g}"
+        f"{plan.scene.tolerance:g} ({worst.group} under {worst.light})"
     )
     if plan.within_tolerance:
         return text
@@ -111,19 +104,6 @@ def notes(plan: Plan) -> list[str]:
 def _costs(candidate: Candidate) -> str:
     memory, time, samples = (cost_text(candidate.cost, key) for key in Cost._fields)
     return f"{memory}, {time} and {samples}"
-
-
-def describe_error(plan: Plan) -> str:
-    """Definition of the errors."""
-    scene = plan.scene
-    materials = " and of the atlas's entries" if scene.atlases else ""
-    lights = ", ".join(map(str, scene.lights))
-    return (
-        f"ΔE00 of {100 * scene.quantile:.4g} % of the textures' pixels{materials} is "
-        f"at most this value, under the worst of {lights}. {len(plan.measured):,} of "
-        f"{pluralise(plan.considered, 'candidate')} were measured; the bounds of the "
-        "others exclude them."
-    )
 
 
 def check_path(scene: SceneFile, path: Path) -> None:
