@@ -1,4 +1,4 @@
-"""Recipes of ``uplift mix``, their mixtures and ramps, as pictures, JSON and tables."""
+"""Recipes of ``uplift mix`` and their mixtures, read and printed."""
 
 from __future__ import annotations
 
@@ -6,9 +6,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from uplift.common.errors import UpliftWarning
+from uplift.common.errors import OptionError, UpliftWarning
 
-from .ingredients import SpectrumResolver
+from .ingredients import SpectrumResolver, split_parts
 from .output.answers import (
     as_lists,
     coordinates,
@@ -18,29 +18,35 @@ from .output.answers import (
     patch,
     print_spectrum,
 )
-from .output.console import has_colours, make_table, print_json, show
+from .output.console import print_json
 from .output.diagnostics import warn
+from .output.table import Table, swatch
 
 if TYPE_CHECKING:
     from uplift.colorimetry.sensor import Sensor
     from uplift.common.arrays import Array
-    from uplift.extras.paint.coats import Ingredients, Medium
+    from uplift.extras.paint.paints import Paints
     from uplift.lookup.cube import Cube
 
 MIXTURE_MAPPING = "scale"
 """How mixtures are mapped into the gamut: it keeps the hue of bright ones."""
+RAMP = 9
+"""Swatches from the first ingredient to the last."""
 
 
 @dataclass(frozen=True, eq=False)
 class Recipe:
-    """Ingredients with their names and parts."""
+    """Ingredients of a kind with their names and parts.
 
-    cube: Cube
-    sensor: Sensor
+    ``spectra`` (n, N) are those of colours, of measured paints K and S (n, 2, N), and
+    of Duntley's paints their constants (n, 6, N).
+    """
+
     kind: str
-    names: Sequence[str]
     parts: tuple[float, ...]
-    ingredients: Ingredients
+    names: tuple[str, ...]
+    spectra: Array
+    on_black: tuple[Array | None, ...]
 
     @property
     def title(self) -> str:
@@ -48,18 +54,48 @@ class Recipe:
         return ", ".join(f"{amount:g} of {name}" for amount, name in pairs)
 
 
-def read_recipe(resolver: SpectrumResolver, words: Sequence[str], kind: str) -> Recipe:
+def read_recipe(
+    resolver: SpectrumResolver, words: Sequence[str], kind: str, paints: Paints | None
+) -> Recipe:
+    """Return the recipe of words, at the wavelengths of the resolver."""
     import numpy as np
 
-    from uplift.extras.paint.coats import Ingredients
+    ingredients = []
+    for word in words:
+        if kind == "duntley":
+            from uplift.extras.paint.duntley import read_constants
 
-    ingredients = [resolver.ingredient(word, kind) for word in words]
+            parts, name = split_parts(word, ())
+            spectrum = read_constants(name, resolver.wavelengths)
+            on_black = None
+        elif paints is not None:
+            parts, name = split_parts(word, paints.names)
+            paint = paints.select([name]).at(resolver.wavelengths).pigments
+            spectrum = np.concatenate([paint.absorption, paint.scattering])
+            on_black = None
+        else:
+            parts, name = split_parts(word, resolver.entries)
+            spectrum, on_black = _colours(resolver, name, kind)
+        ingredients.append((parts, name, spectrum, on_black))
     # What is not in a mixture has no place on its ramp either.
-    ingredients = [row for row in ingredients if row[1] > 0] or ingredients
-    names, parts, spectra, on_black = zip(*ingredients, strict=True)
-    stacked = Ingredients(np.stack(spectra), on_black)
-    sensor = resolver.sensor or resolver.cube.data.sensor
-    return Recipe(resolver.cube, sensor, kind, names, parts, stacked)
+    ingredients = [row for row in ingredients if row[0] > 0] or ingredients
+    amounts, names, spectra, blacks = zip(*ingredients, strict=True)
+    return Recipe(kind, amounts, names, np.stack(spectra), blacks)
+
+
+def _colours(
+    resolver: SpectrumResolver, name: str, kind: str
+) -> tuple[Array, Array | None]:
+    """Return the spectrum of an ingredient, and that on black if it is given."""
+    if name in resolver.entries or "/" not in name:
+        return resolver.spectrum(name), None
+    if kind != "pigment":
+        raise OptionError(
+            f"{kind}s must not have a colour on black",
+            hint="pass their colour on white only",
+        )
+    on_white, on_black = (part.strip() for part in name.split("/", 1))
+    return resolver.spectrum(on_white), resolver.spectrum(on_black)
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,24 +108,16 @@ class Mixture:
     """Spectrum of the mixture at the wavelengths of the output."""
 
 
-def mix_ramp(
-    recipe: Recipe, medium: Medium, backing: Array | None, steps: int, method: str
+def display_mixture(
+    cube: Cube, sensor: Sensor, amounts: Array, mixed: Array, method: str
 ) -> Mixture:
-    """Mix on a backing; without, return the light that a plate transmits."""
+    """Return the colours of mixed spectra (n, N), whose first samples are those of the
+    sensor, in the gamut.
+    """
     import numpy as np
 
     from uplift.colorimetry.gamut import map_to_gamut
-    from uplift.extras.paint.coats import make_coat, mix, ramp
 
-    cube = recipe.cube
-    sensor = recipe.sensor
-    parts = recipe.parts
-    amounts = np.concatenate([np.array(parts)[None], ramp(parts, steps)])
-    if backing is None:
-        coat = make_coat(recipe.kind, recipe.ingredients, amounts, medium)
-        mixed = coat.layer.transmittance
-    else:
-        mixed = mix(recipe.kind, recipe.ingredients, amounts, medium, backing)
     count = len(sensor.wavelengths)
     rgb = sensor.rgb(mixed[:, :count])
     inside = np.clip(rgb, 0, 1)
@@ -105,15 +133,16 @@ def mix_ramp(
     return Mixture(mapped.rgb, colours, mixed[0, count:])
 
 
-def plot_ramp(recipe: Recipe, mixture: Mixture, path: str, *, force: bool) -> None:
+def plot_ramp(
+    recipe: Recipe, mixture: Mixture, cube: Cube, path: str, *, force: bool
+) -> None:
     from uplift.extras.colour.srgb import to_display_codes
     from uplift.extras.pages.plots import plot_strips
 
-    names = recipe.names
-    codes = to_display_codes(mixture.rgb, recipe.cube.data.sensor) / 255
+    codes = to_display_codes(mixture.rgb, cube.data.sensor) / 255
     strips = {f"{recipe.kind}: {recipe.title}": codes[:1]}
-    if len(names) > 1:
-        strips[f"from {names[0]} to {names[-1]}"] = codes[1:]
+    if len(recipe.names) > 1:
+        strips[f"from {recipe.names[0]} to {recipe.names[-1]}"] = codes[1:]
     plot_strips(strips, path, force=force)
 
 
@@ -129,59 +158,54 @@ def print_mixture_json(recipe: Recipe, mixture: Mixture, wavelengths: Array) -> 
     print_json(answer, indent=None)
 
 
-def print_mixture_table(
-    recipe: Recipe, mixture: Mixture, wavelengths: Array, *, complete: bool
+def print_mixture(
+    recipe: Recipe, mixture: Mixture, cube: Cube, wavelengths: Array, *, complete: bool
 ) -> None:
-    cube = recipe.cube
     colour = mixture.colours[0]
     fields = {
         recipe.kind: recipe.title,
         "linear RGB": f"{format_rgb(mixture.rgb[0])}  {colour['hex']}",
+        **describe_coordinates(colour),
     }
-    fields |= describe_coordinates(colour)
     if len(recipe.names) > 1:
         fields["ramp"] = " ".join(step["hex"] for step in mixture.colours[1:])
+    patches = {
+        "linear RGB": patch(cube, mixture.rgb[0]),
+        "ramp": "".join(patch(cube, rgb, 4) for rgb in mixture.rgb[1:]),
+    }
     print_spectrum(
         fields,
         wavelengths,
         mixture.values,
         complete=complete,
-        patches={
-            "linear RGB": patch(cube, mixture.rgb[0]),
-            "ramp": "".join(patch(cube, rgb, 4) for rgb in mixture.rgb[1:]),
-        },
+        patches=patches,
         highest=max(1, mixture.values.max()),
     )
 
 
-def print_theories(recipe: Recipe, method: str, style: str) -> None:
+def print_theories(recipe: Recipe, cube: Cube, method: str, style: str) -> None:
     import numpy as np
-    from rich.text import Text
 
     from uplift.colorimetry.gamut import map_to_gamut
     from uplift.extras.paint.theories import mixers
 
-    cube = recipe.cube
     sensor = cube.data.sensor
-    rgb = np.clip(sensor.rgb(recipe.ingredients.spectra), 0, 1)
-    parts = np.array(recipe.parts)
-    mixed = {
-        mixer.title: map_to_gamut(mixer.mix(rgb, parts)[None], sensor, method).rgb[0]
-        for mixer in mixers(cube)
+    rgb = np.clip(sensor.rgb(recipe.spectra), 0, 1)
+    rows = []
+    for title, mix in mixers(cube).items():
+        mixed = mix(rgb, np.array(recipe.parts))[None]
+        colour = map_to_gamut(mixed, sensor, method).rgb[0]
+        rows.append({"theory": title, **_colour(cube, colour)})
+    headings = {"theory": "theory", "hex": "hex", "rgb": "linear RGB"}
+    formats = {
+        "hex": lambda code: swatch(code, code),
+        "rgb": ".6f",
     }
+    table = Table(rows, headings, formats=formats)
     if style == "json":
-        rows = [{"theory": title, **_colour(cube, rgb)} for title, rgb in mixed.items()]
         print_json({"names": recipe.names, "theories": rows}, indent=None)
-        return
-    table = make_table()
-    table.add_column("theory")
-    for heading in ("hex", "linear RGB"):
-        table.add_column(heading, no_wrap=True)
-    for title, rgb in mixed.items():
-        code = hex_code(cube, rgb)
-        cell = Text(code).append("        " * has_colours(), style=f"on {code}")
-        table.add_row(title, cell, format_rgb(rgb))
-    show(table)
+    else:
+        table.print_text()
 
 
 def _colour(cube: Cube, rgb: Array) -> dict[str, Any]:

@@ -230,22 +230,22 @@ def _export_paints(
     from uplift.extras.paint.paint_exports import PAINT_EXPORTS
     from uplift.extras.paint.paints_file import read_paints
 
-    by_suffix = {export.suffix: name for name, export in PAINT_EXPORTS.items()}
+    by_suffix = {suffix: name for name, (suffix, _) in PAINT_EXPORTS.items()}
     style = style or by_suffix.get(Path(output or "").suffix.lower())
     if style not in PAINT_EXPORTS:
         raise click.UsageError(
             f"Give --output ending in {', '.join(by_suffix)}, or --format for paints: "
             f"{', '.join(PAINT_EXPORTS)}."
         )
-    export = PAINT_EXPORTS[style]
+    suffix, write = PAINT_EXPORTS[style]
     target = check_output(
-        output or Path(path).stem + export.suffix, inputs=[path], force=force
+        output or Path(path).stem + suffix, inputs=[path], force=force
     )
     paints = read_paints(path)
     if names:
         paints = paints.select(names)
     with progress_bar(f"writing {target}"):
-        written = export.write(paints, target, style, force=force)
+        written = write(paints, target, style, force=force)
     say(f"{target}: {written}")
 
 

@@ -10,18 +10,19 @@ import click
 from uplift.common.text import pluralise
 
 from .. import options
+from ..ingredients import SpectrumResolver, read_entries, sample_entry
 from ..output.console import paragraph, print_json, say
 from ..output.progress import progress_bar
 from ..outputs import check_outputs
 from ..paints import (
-    fit_fields,
-    match_fields,
+    hex_codes,
     paint_fields,
     plot_recipes,
     print_fit,
+    print_fit_json,
     print_paints,
     print_recipes,
-    read_target,
+    recipe_rows,
 )
 from ..startup import enable_jit_cache
 from .mix import command as mix
@@ -133,7 +134,7 @@ def fit(
         advice = paint.advise_samples(fitted)
     paint.write_paints(fitted.paints, output, force=force)
     if style == "json":
-        print_json({"output": output, **fit_fields(fitted, advice)})
+        print_fit_json(fitted, advice, output)
         return
     print_fit(fitted, advice)
     for note in samples.notes:
@@ -202,13 +203,6 @@ def _surface(
     default=100,
     help="Most parts of a recipe in all.",
 )
-@click.option(
-    "--alternatives",
-    metavar="N",
-    type=options.Whole(1, 100),
-    default=5,
-    help="Number of recipes.",
-)
 @options.light("Light under which the colours should agree", "D65")
 @options.number(
     "--thickness",
@@ -230,7 +224,6 @@ def match(
     spectrum_path: str | None,
     count: int,
     steps: int,
-    alternatives: int,
     lights: Sequence[Illuminant],
     thickness: float | None,
     ground: str | None,
@@ -241,6 +234,7 @@ def match(
     force: bool,
 ) -> None:
     from uplift.extras import paint
+    from uplift.lookup.cube import load
 
     if (colour is None) == (spectrum_path is None):
         raise click.UsageError("Give one of COLOUR and --spectrum.")
@@ -248,18 +242,28 @@ def match(
     paints = paint.read_paints(paints_path)
     if names:
         paints = paints.select(names)
-    target = read_target(
-        paints, colour, spectrum_path, cube_path, files, lights, thickness, ground
-    )
-    found = paint.match(
-        target, paints, count=count, steps=steps, alternatives=alternatives
-    )
-    if plot_path is not None:
-        plot_recipes(target, found, plot_path, force=force)
-    if style == "json":
-        print_json(match_fields(target, paints, found))
+    nm = paints.wavelengths
+    resolver = SpectrumResolver(load(cube_path), read_entries(files), nm)
+    if spectrum_path is None:
+        reflectance = resolver.spectrum(str(colour))
     else:
-        print_recipes(target, paints, found, count)
+        reflectance = sample_entry(read_entries([spectrum_path])[0], nm)
+    target = paint.PaintTarget(
+        reflectance,
+        tuple(map(paints.light, lights or ("D65",))),
+        thickness,
+        1.0 if ground is None else resolver.spectrum(ground),
+    )
+    recipes = paint.match(target, paints, count=count, steps=steps)
+    if plot_path is not None:
+        plot_recipes(target, recipes, plot_path, force=force)
+    (code,) = hex_codes(paints, reflectance[None])
+    rows = recipe_rows(target, paints, recipes)
+    if style == "json":
+        names = [light.name for light in target.lights]
+        print_json({"colour": code, "lights": names, "recipes": rows})
+    else:
+        print_recipes(rows, recipes, code, min(count, len(paints)))
 
 
 @command.command(

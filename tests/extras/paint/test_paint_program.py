@@ -154,7 +154,7 @@ def test_one_paint_is_a_program(paints):
 
 
 def test_every_language_is_an_export():
-    assert {name: PAINT_EXPORTS[name].suffix for name in LANGUAGES} == SUFFIXES
+    assert {name: PAINT_EXPORTS[name][0] for name in LANGUAGES} == SUFFIXES
 
 
 NODES = np.random.default_rng(1).integers(0, LUT_SIZE, (60, 3)) / (LUT_SIZE - 1)

@@ -13,7 +13,7 @@ from uplift.colorimetry.delta_e import delta_e_2000, delta_e_spectra, lab
 from uplift.common.errors import OptionError
 from uplift.extras.paint.paints import Paints
 from uplift.extras.paint.pigments import Pigment
-from uplift.extras.paint.recipes import NEARLY, PaintTarget, descend, match, shares_of
+from uplift.extras.paint.recipes import NEARLY, PaintTarget, match
 
 GRID = (400, 700, 20)
 
@@ -193,17 +193,3 @@ def test_too_many_sets_raise():
 def test_a_negative_thickness_raises(paints):
     with raises(OptionError):
         match(target(np.full(16, 0.5), thickness=-1.0), paints)
-
-
-def test_descent_finds_minima_and_keeps_what_cannot_improve():
-    """Rows are independent: two have a solution, and the third one is constant."""
-    aims = np.array([[0.2, 0.5, 0.3], [0.7, 0.1, 0.2], [0.0, 0.0, 0.0]])
-    weights = np.array([[1.0], [1.0], [0.0]])
-
-    def residuals(ratios):
-        return weights * (shares_of(ratios) - aims)
-
-    ratios, squares = descend(residuals, np.zeros((3, 2)))
-    assert_allclose(shares_of(ratios)[:2], aims[:2], atol=1e-6)
-    assert_allclose(squares, 0, atol=1e-12)
-    assert (ratios[2] == 0).all()

@@ -56,6 +56,8 @@ LEAST_FREEDOM = 0.05
 """Smallest fraction of the measured values that the unknowns leave free."""
 MAX_VARIABLES = 6000
 """Largest number of unknowns, whose square must fit in memory."""
+ODD = 3.0
+"""ΔE00, in that of the median sample, from which a sample may be wrong."""
 
 Function = Callable[[Array], Any]
 """A compiled function of the variables (d,)."""
@@ -109,6 +111,15 @@ class PaintFit:
     optimum: Array
     covariance: Array
     model: "FitModel"
+
+    @property
+    def doubtful(self) -> list[int]:
+        """Samples that fit so much worse than the median one that their parts or
+        measurements may be wrong, the worst first.
+        """
+        limit = max(ODD * float(np.median(self.delta_e)), 1.0)
+        order = np.argsort(-self.delta_e)
+        return order[self.delta_e[order] > limit].tolist()
 
 
 @dataclass(frozen=True, eq=False)

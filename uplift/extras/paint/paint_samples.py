@@ -90,6 +90,13 @@ class PaintSamples:
         """Whether each sample (n,) hides its ground."""
         return np.isinf(self.thickness)
 
+    @property
+    def unmixed(self) -> list[str]:
+        """Paints that one opaque sample has, and none of their mixtures."""
+        alone = (self.shares > 0).sum(axis=0) == 1
+        pure = self.is_opaque[:, None] & (self.shares == 1)
+        return np.array(self.paints)[alone & pure.any(axis=0)].tolist()
+
 
 def read_paint_samples(path: StrPath, recipes: StrPath | None = None) -> PaintSamples:
     """Read measured samples of paint.
