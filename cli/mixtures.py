@@ -53,6 +53,15 @@ class Recipe:
         pairs = zip(self.parts, self.names, strict=True)
         return ", ".join(f"{amount:g} of {name}" for amount, name in pairs)
 
+    @property
+    def amounts(self) -> Array:
+        """The parts, followed by those of the ramp."""
+        import numpy as np
+
+        from uplift.extras.paint.optics import ramp
+
+        return np.concatenate([[self.parts], ramp(self.parts, RAMP)])
+
 
 def read_recipe(
     resolver: SpectrumResolver, words: Sequence[str], kind: str, paints: Paints | None
@@ -60,56 +69,54 @@ def read_recipe(
     """Return the recipe of words, at the wavelengths of the resolver."""
     import numpy as np
 
-    ingredients = []
+    rows = []
     for word in words:
+        entries = resolver.entries if paints is None else paints.names
+        parts, name = split_parts(word, () if kind == "duntley" else entries)
+        on_black = None
         if kind == "duntley":
             from uplift.extras.paint.duntley import read_constants
 
-            parts, name = split_parts(word, ())
             spectrum = read_constants(name, resolver.wavelengths)
-            on_black = None
         elif paints is not None:
-            parts, name = split_parts(word, paints.names)
             paint = paints.select([name]).at(resolver.wavelengths).pigments
             spectrum = np.concatenate([paint.absorption, paint.scattering])
-            on_black = None
         else:
-            parts, name = split_parts(word, resolver.entries)
-            spectrum, on_black = _colours(resolver, name, kind)
-        ingredients.append((parts, name, spectrum, on_black))
+            spectrum, *blacks = _colours(resolver, name, kind)
+            on_black = blacks[0] if blacks else None
+        rows.append((parts, name, spectrum, on_black))
     # What is not in a mixture has no place on its ramp either.
-    ingredients = [row for row in ingredients if row[0] > 0] or ingredients
-    amounts, names, spectra, blacks = zip(*ingredients, strict=True)
-    return Recipe(kind, amounts, names, np.stack(spectra), blacks)
+    rows = [row for row in rows if row[0] > 0] or rows
+    amounts, names, spectra, on_blacks = zip(*rows, strict=True)
+    return Recipe(kind, amounts, names, np.stack(spectra), on_blacks)
 
 
-def _colours(
-    resolver: SpectrumResolver, name: str, kind: str
-) -> tuple[Array, Array | None]:
+def _colours(resolver: SpectrumResolver, name: str, kind: str) -> list[Array]:
     """Return the spectrum of an ingredient, and that on black if it is given."""
     if name in resolver.entries or "/" not in name:
-        return resolver.spectrum(name), None
+        return [resolver.spectrum(name)]
     if kind != "pigment":
         raise OptionError(
             f"{kind}s must not have a colour on black",
             hint="pass their colour on white only",
         )
-    on_white, on_black = (part.strip() for part in name.split("/", 1))
-    return resolver.spectrum(on_white), resolver.spectrum(on_black)
+    return [resolver.spectrum(part.strip()) for part in name.split("/", 1)]
 
 
 @dataclass(frozen=True, eq=False)
 class Mixture:
     """The mixture, followed by the ramp from its first to its last ingredient."""
 
+    recipe: Recipe
+    cube: Cube
     rgb: Array
     colours: list[dict[str, Any]]
     values: Array
     """Spectrum of the mixture at the wavelengths of the output."""
 
 
-def display_mixture(
-    cube: Cube, sensor: Sensor, amounts: Array, mixed: Array, method: str
+def display(
+    recipe: Recipe, cube: Cube, sensor: Sensor, mixed: Array, method: str
 ) -> Mixture:
     """Return the colours of mixed spectra (n, N), whose first samples are those of the
     sensor, in the gamut.
@@ -128,28 +135,27 @@ def display_mixture(
         warn([UpliftWarning(problem)])
     colours = [
         {"parts": row.tolist(), **_colour(cube, colour)}
-        for row, colour in zip(amounts, mapped.rgb, strict=True)
+        for row, colour in zip(recipe.amounts, mapped.rgb, strict=True)
     ]
-    return Mixture(mapped.rgb, colours, mixed[0, count:])
+    return Mixture(recipe, cube, mapped.rgb, colours, mixed[0, count:])
 
 
-def plot_ramp(
-    recipe: Recipe, mixture: Mixture, cube: Cube, path: str, *, force: bool
-) -> None:
+def plot_ramp(mixture: Mixture, path: str, *, force: bool) -> None:
     from uplift.extras.colour.srgb import to_display_codes
     from uplift.extras.pages.plots import plot_strips
 
-    codes = to_display_codes(mixture.rgb, cube.data.sensor) / 255
+    recipe = mixture.recipe
+    codes = to_display_codes(mixture.rgb, mixture.cube.data.sensor) / 255
     strips = {f"{recipe.kind}: {recipe.title}": codes[:1]}
     if len(recipe.names) > 1:
         strips[f"from {recipe.names[0]} to {recipe.names[-1]}"] = codes[1:]
     plot_strips(strips, path, force=force)
 
 
-def print_mixture_json(recipe: Recipe, mixture: Mixture, wavelengths: Array) -> None:
+def print_mixture_json(mixture: Mixture, wavelengths: Array) -> None:
     answer = {
-        "kind": recipe.kind,
-        "names": recipe.names,
+        "kind": mixture.recipe.kind,
+        "names": mixture.recipe.names,
         **mixture.colours[0],
         "wavelengths": wavelengths.tolist(),
         "spectrum": as_lists(mixture.values),
@@ -158,17 +164,16 @@ def print_mixture_json(recipe: Recipe, mixture: Mixture, wavelengths: Array) -> 
     print_json(answer, indent=None)
 
 
-def print_mixture(
-    recipe: Recipe, mixture: Mixture, cube: Cube, wavelengths: Array, *, complete: bool
-) -> None:
-    colour = mixture.colours[0]
+def print_mixture(mixture: Mixture, wavelengths: Array, *, complete: bool) -> None:
+    cube = mixture.cube
+    colour, *steps = mixture.colours
     fields = {
-        recipe.kind: recipe.title,
+        mixture.recipe.kind: mixture.recipe.title,
         "linear RGB": f"{format_rgb(mixture.rgb[0])}  {colour['hex']}",
         **describe_coordinates(colour),
     }
-    if len(recipe.names) > 1:
-        fields["ramp"] = " ".join(step["hex"] for step in mixture.colours[1:])
+    if steps:
+        fields["ramp"] = " ".join(step["hex"] for step in steps)
     patches = {
         "linear RGB": patch(cube, mixture.rgb[0]),
         "ramp": "".join(patch(cube, rgb, 4) for rgb in mixture.rgb[1:]),

@@ -15,9 +15,8 @@ from ..ingredients import SpectrumResolver, read_entries
 from ..inputs import check_range, find_input_space
 from ..mixtures import (
     MIXTURE_MAPPING,
-    RAMP,
     Recipe,
-    display_mixture,
+    display,
     plot_ramp,
     print_mixture,
     print_mixture_json,
@@ -29,19 +28,19 @@ from ..output.diagnostics import warn
 from ..output.progress import progress_bar
 from ..outputs import check_outputs
 from ..startup import enable_jit_cache
+from ..surfaces import SURFACE, stated_surface, surface_options
 
 if TYPE_CHECKING:
     from uplift.colorimetry.sensor import Sensor
     from uplift.common.arrays import Array
     from uplift.extras.images.converter import RowConverter
-    from uplift.extras.paint.optics import Coat, Surface
+    from uplift.extras.paint.optics import Coat
     from uplift.extras.paint.paints import Paints
     from uplift.lookup.cube import Cube
 
 SUMS = ("filter", "light")
 """Kinds that are no coats."""
 COAT = ("plate", "over", "plot_path")
-SURFACE = ("refractive_index", "surface_reflectance", "internal_reflectance")
 
 
 @click.command(
@@ -129,24 +128,7 @@ SURFACE = ("refractive_index", "surface_reflectance", "internal_reflectance")
 @click.option(
     "--ground", metavar="COLOUR", help="Substrate of the coat. [default: white]"
 )
-@options.number(
-    "--refractive-index",
-    default=1.0,
-    metavar="N",
-    help="Refractive index of the binder, 1.5 for oil; 1 leaves out the surface.",
-)
-@options.number(
-    "--surface-reflectance",
-    metavar="K1",
-    help="Saunderson's reflectance of the surface for light from air. [default: by "
-    "--refractive-index]",
-)
-@options.number(
-    "--internal-reflectance",
-    metavar="K2",
-    help="Saunderson's reflectance of the surface for diffuse light from within. "
-    "[default: by --refractive-index]",
-)
+@surface_options("1 leaves out the surface")
 @click.option(
     "--plate",
     type=click.Choice(("reflected", "transmitted")),
@@ -208,7 +190,7 @@ def command(
 ) -> None:
     import numpy as np
 
-    from uplift.extras.paint.optics import ramp
+    from uplift.extras.paint.optics import NO_SURFACE
     from uplift.lookup.cube import load
 
     _check_kind(kind, plate, theories=theories)
@@ -246,9 +228,8 @@ def command(
     if theories:
         print_theories(recipe, cube, method, style)
         return
-    stated = _surface(**surface)
-    if paints is not None and not surface.keys() & options.given().keys():
-        stated = paints.surface
+    usual = NO_SURFACE if paints is None else paints.surface
+    stated = stated_surface(**surface) or usual
 
     def coat(amounts: Sequence[float] | Array) -> Coat:
         components = _components(recipe, scattering, cube, further)
@@ -278,21 +259,19 @@ def command(
         )
         _paint(painter, over, output, force=force)
         return
-    amounts = np.concatenate([[recipe.parts], ramp(recipe.parts, RAMP)])
     if kind in SUMS:
-        mixed = _sum(kind, recipe.spectra, amounts)
+        mixed = _sum(recipe)
     elif plate == "transmitted":
-        mixed = coat(amounts).layer.transmittance
+        mixed = coat(recipe.amounts).layer.transmittance
     else:
-        mixed = coat(amounts).over(resolver.spectrum(ground or "white"))
-    mixture = display_mixture(cube, sensor, amounts, mixed, method)
+        mixed = coat(recipe.amounts).over(resolver.spectrum(ground or "white"))
+    mixture = display(recipe, cube, sensor, mixed, method)
     if plot_path is not None:
-        plot_ramp(recipe, mixture, cube, plot_path, force=force)
+        plot_ramp(mixture, plot_path, force=force)
     if style == "json":
-        print_mixture_json(recipe, mixture, further)
+        print_mixture_json(mixture, further)
     else:
-        is_complete = wavelengths is not None
-        print_mixture(recipe, mixture, cube, further, complete=is_complete)
+        print_mixture(mixture, further, complete=wavelengths is not None)
 
 
 def _check_kind(kind: str, plate: str | None, *, theories: bool) -> None:
@@ -372,24 +351,11 @@ def _components(recipe: Recipe, scattering: str, cube: Cube, further: Array) -> 
     return Pigments(recipe.spectra, law, recipe.on_black)
 
 
-def _sum(kind: str, spectra: Array, amounts: Array) -> Array:
+def _sum(recipe: Recipe) -> Array:
     from uplift.extras.paint.optics import add_lights, stack_filters
 
-    return (stack_filters if kind == "filter" else add_lights)(spectra, amounts)
-
-
-def _surface(
-    refractive_index: float,
-    surface_reflectance: float | None,
-    internal_reflectance: float | None,
-) -> Surface:
-    from uplift.extras.paint.optics import Surface
-
-    of_index = Surface.of_index(refractive_index)
-    return Surface(
-        of_index.outside if surface_reflectance is None else surface_reflectance,
-        of_index.inside if internal_reflectance is None else internal_reflectance,
-    )
+    mix = stack_filters if recipe.kind == "filter" else add_lights
+    return mix(recipe.spectra, recipe.amounts)
 
 
 def _paint(painter: RowConverter, over: str, output: str, *, force: bool) -> None:

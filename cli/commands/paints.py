@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -25,11 +25,11 @@ from ..paints import (
     recipe_rows,
 )
 from ..startup import enable_jit_cache
+from ..surfaces import stated_surface, surface_options
 from .mix import command as mix
 
 if TYPE_CHECKING:
     from uplift.colorimetry.illuminants import Illuminant
-    from uplift.extras.paint.optics import Surface
 
 paints_option = click.option(
     "--paints",
@@ -94,39 +94,28 @@ command.add_command(mix)
     type=click.Path(),
     help="Table of the parts, by the names of samples. [default: SAMPLES]",
 )
-@options.number(
-    "--refractive-index",
-    metavar="N",
-    help="Refractive index of the binder; 1 leaves out the surface. [default: the "
-    "surface is fitted]",
-)
-@options.number(
-    "--surface-reflectance",
-    metavar="K1",
-    help="Saunderson's reflectance of the surface for light from air.",
-)
-@options.number(
-    "--internal-reflectance",
-    metavar="K2",
-    help="Saunderson's reflectance of the surface for light from within.",
-)
+@surface_options("1 leaves out the surface. [default: the surface is fitted]")
 @options.output(help="File to write.", default="paints.toml")
 @options.table_or_json
 @options.force
 def fit(
     samples_path: str,
     recipes: str | None,
-    refractive_index: float | None,
-    surface_reflectance: float | None,
-    internal_reflectance: float | None,
     output: str,
     style: str,
     force: bool,
+    **stated: Any,
 ) -> None:
     enable_jit_cache()
     from uplift.extras import paint
 
-    surface = _surface(refractive_index, surface_reflectance, internal_reflectance)
+    if len(stated.keys() & options.given().keys()) == 1 and (
+        stated["refractive_index"] is None
+    ):
+        raise click.UsageError(
+            "--surface-reflectance and --internal-reflectance require each other."
+        )
+    surface = stated_surface(**stated)
     check_outputs(output)
     samples = paint.read_paint_samples(samples_path, recipes)
     with progress_bar("fitting paints", quiet=style == "json") as progress:
@@ -140,26 +129,6 @@ def fit(
     for note in samples.notes:
         paragraph(f"{samples_path if recipes is None else recipes}: {note}")
     say(f"{output}: {pluralise(len(fitted.paints), 'paint')}", err=True)
-
-
-def _surface(
-    index: float | None, outside: float | None, inside: float | None
-) -> Surface | None:
-    """Return the surface that options state, None if it is to be fitted."""
-    from uplift.extras.paint.optics import Surface
-
-    given = (index, outside, inside)
-    if all(value is None for value in given):
-        return None
-    if index is None and (outside is None or inside is None):
-        raise click.UsageError(
-            "--surface-reflectance and --internal-reflectance require each other."
-        )
-    of_index = Surface.of_index(1.0 if index is None else index)
-    return Surface(
-        of_index.outside if outside is None else outside,
-        of_index.inside if inside is None else inside,
-    )
 
 
 @command.command(
