@@ -11,17 +11,12 @@ from uplift.common.errors import OptionError, OutputError
 from uplift.common.text import pluralise
 
 from .. import options
-from ..ingredients import SpectrumResolver, read_entries
 from ..inputs import check_range, find_input_space
 from ..mixtures import (
     MIXTURE_MAPPING,
-    Recipe,
-    display,
     plot_ramp,
     print_mixture,
-    print_mixture_json,
     print_theories,
-    read_recipe,
 )
 from ..output.console import say
 from ..output.diagnostics import warn
@@ -36,6 +31,7 @@ if TYPE_CHECKING:
     from uplift.extras.images.converter import RowConverter
     from uplift.extras.paint.optics import Coat
     from uplift.extras.paint.paints import Paints
+    from uplift.extras.paint.pigments import Scattering
     from uplift.lookup.cube import Cube
 
 SUMS = ("filter", "light")
@@ -190,6 +186,13 @@ def command(
 ) -> None:
     import numpy as np
 
+    from uplift.extras.paint.coats import Dyes
+    from uplift.extras.paint.mixture import (
+        SpectrumResolver,
+        display_mixture,
+        read_entries,
+        read_recipe,
+    )
     from uplift.extras.paint.optics import NO_SURFACE
     from uplift.lookup.cube import load
 
@@ -232,9 +235,11 @@ def command(
     stated = stated_surface(**surface) or usual
 
     def coat(amounts: Sequence[float] | Array) -> Coat:
-        components = _components(recipe, scattering, cube, further)
-        make = components.coat if plate is None else components.plate
-        return make(amounts, thickness, stated)
+        law = _scattering_law(scattering, cube.data.sensor, further)
+        components = recipe.components(law)
+        if isinstance(components, Dyes) and plate is not None:
+            return components.plate(amounts, thickness, stated)
+        return components.coat(amounts, thickness, stated)
 
     if over is not None and output is not None:
         provenance = {
@@ -260,18 +265,16 @@ def command(
         _paint(painter, over, output, force=force)
         return
     if kind in SUMS:
-        mixed = _sum(recipe)
+        mixed = recipe.sums()
     elif plate == "transmitted":
         mixed = coat(recipe.amounts).layer.transmittance
     else:
         mixed = coat(recipe.amounts).over(resolver.spectrum(ground or "white"))
-    mixture = display(recipe, cube, sensor, mixed, method)
+    mixture = display_mixture(recipe, cube, sensor, mixed, method)
     if plot_path is not None:
-        plot_ramp(mixture, plot_path, force=force)
-    if style == "json":
-        print_mixture_json(mixture, further)
-    else:
-        print_mixture(mixture, further, complete=wavelengths is not None)
+        plot_ramp(mixture, cube, plot_path, force=force)
+    complete = wavelengths is not None
+    print_mixture(mixture, cube, further, style, complete=complete)
 
 
 def _check_kind(kind: str, plate: str | None, *, theories: bool) -> None:
@@ -332,30 +335,11 @@ def _setting(sensor: Sensor) -> tuple[str, str, str]:
     return sensor.space, sensor.illuminant, sensor.observer
 
 
-def _components(recipe: Recipe, scattering: str, cube: Cube, further: Array) -> Any:
-    """Return the components of a coat, by the class of their kind."""
-    from uplift.extras.paint import pigments
+def _scattering_law(name: str, sensor: Sensor, further: Array) -> Scattering:
+    from uplift.extras.paint.pigments import CONSTANT, SQUARE_ROOT, dispersive
 
-    if recipe.kind == "measured":
-        return pigments.Pigment(recipe.spectra[:, 0], recipe.spectra[:, 1])
-    if recipe.kind == "duntley":
-        from uplift.extras.paint.duntley import DuntleyPaints
-
-        return DuntleyPaints(recipe.spectra)
-    from uplift.extras.paint.coats import Dyes, Pigments
-
-    if recipe.kind == "dye":
-        return Dyes(recipe.spectra)
-    laws = {"root": pigments.SQUARE_ROOT, "constant": pigments.CONSTANT}
-    law = laws.get(scattering) or pigments.dispersive(cube.data.sensor, further)
-    return Pigments(recipe.spectra, law, recipe.on_black)
-
-
-def _sum(recipe: Recipe) -> Array:
-    from uplift.extras.paint.optics import add_lights, stack_filters
-
-    mix = stack_filters if recipe.kind == "filter" else add_lights
-    return mix(recipe.spectra, recipe.amounts)
+    laws: dict[str, Scattering] = {"root": SQUARE_ROOT, "constant": CONSTANT}
+    return laws.get(name) or dispersive(sensor, further)
 
 
 def _paint(painter: RowConverter, over: str, output: str, *, force: bool) -> None:

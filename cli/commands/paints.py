@@ -10,7 +10,6 @@ import click
 from uplift.common.text import pluralise
 
 from .. import options
-from ..ingredients import SpectrumResolver, read_entries, sample_entry
 from ..output.console import paragraph, print_json, say
 from ..output.progress import progress_bar
 from ..outputs import check_outputs
@@ -203,6 +202,11 @@ def match(
     force: bool,
 ) -> None:
     from uplift.extras import paint
+    from uplift.extras.paint.mixture import (
+        SpectrumResolver,
+        read_entries,
+        sample_entry,
+    )
     from uplift.lookup.cube import load
 
     if (colour is None) == (spectrum_path is None):
