@@ -1,6 +1,5 @@
 """Recipes: known ones are found again, and no grid of parts has a better one."""
 
-from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -151,14 +150,6 @@ def test_few_parts_suffice(paints):
     assert errors[2] < NEARLY
 
 
-def test_costs_are_those_of_a_part(paints):
-    priced = replace(paints, prices=(1.0, 2.0, np.nan, 5.0))
-    best = match(target(paints.reflectance([3, 1, 0, 0])), priced)[0]
-    assert best.cost == pytest.approx(1.25)
-    best = match(target(paints.reflectance([3, 0, 1, 0])), priced)[0]
-    assert np.isnan(best.cost)
-
-
 def test_one_paint_and_sets_larger_than_the_choice(paints):
     alone = match(target(np.full(16, 0.5)), paints.select(["red"]), count=5)
     assert [recipe.paints for recipe in alone] == [("red",)]
@@ -188,8 +179,3 @@ def test_too_many_sets_raise():
     many = Paints(names, invented().wavelengths, Pigment(rows, rows))
     with raises(OptionError, "too-many-recipes"):
         match(target(np.full(16, 0.5)), many, count=3)
-
-
-def test_a_negative_thickness_raises(paints):
-    with raises(OptionError):
-        match(target(np.full(16, 0.5), thickness=-1.0), paints)
