@@ -12,7 +12,6 @@ from tests.extras.paint.invented import invented
 from uplift.colorimetry import observer
 from uplift.colorimetry.delta_e import delta_e_rgb
 from uplift.extras.colour.srgb import decode, encode
-from uplift.extras.export.registry import PAINT_EXPORTS
 from uplift.extras.paint.paint_exports import (
     HIDDEN,
     LUT_SIZE,
