@@ -12,7 +12,6 @@ from uplift.common.errors import ColourError, OptionError, UpliftWarning
 from uplift.common.text import format_value
 from uplift.extras.files.csv import is_decimal, parse_decimal
 
-from .colours import ColourSource
 from .output.diagnostics import warn
 
 if TYPE_CHECKING:
@@ -93,6 +92,7 @@ class SpectrumResolver:
         from uplift.atlas.atlas import Atlas
         from uplift.atlas.resampling import on_grid
         from uplift.colorimetry.gamut import map_to_gamut
+        from uplift.extras.colour.colour_source import ColourSource
 
         entries = self.cube.data.atlas
         if text in entries.names:

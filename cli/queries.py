@@ -9,18 +9,18 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from uplift.common.errors import UpliftWarning
+from uplift.common.errors import ColourError, UpliftWarning
 from uplift.common.text import pluralise
 
 from . import options
-from .colours import find_colours
-from .inputs import check_range
+from .inputs import check_range, find_input_space
 from .output.diagnostics import warn
 
 if TYPE_CHECKING:
     from uplift.colorimetry.illuminants import Illuminant
     from uplift.colorimetry.sensor import Light
     from uplift.common.arrays import Array
+    from uplift.extras.colour.colour_source import ColourSource
     from uplift.extras.colour.query import QueryBlock, QueryResult
     from uplift.extras.photographs.colour import PhotographedColour
 
@@ -55,6 +55,42 @@ def colour_sources(xyz: str, space: str) -> options.Decorator:
         ),
         options.input_space("the colours", default=space),
     )
+
+
+def find_colours(
+    colour: tuple[str, ...],
+    input_path: str | None,
+    xyz: tuple[float, float, float] | None,
+    xy: tuple[float, float] | None,
+    luminance: float | None,
+    encoded: bool,
+    input_space: str | None,
+) -> ColourSource:
+    """Return the source that the values of `colour_sources` name. Raises click's error
+    for none or several.
+    """
+    if colour == ("-",):
+        colour = ()
+        input_path = input_path or "-"
+    if (xy is None) != (luminance is None) or (xyz is not None and xy is not None):
+        raise click.UsageError(
+            "--xy X Y and --luminance Y require each other, and --xyz is an "
+            "alternative."
+        )
+    if xy is not None and luminance is not None:
+        x, y = xy
+        if not y > 0:
+            raise ColourError(
+                f"y of a chromaticity must be positive, got {y:g}",
+                hint="give CIE x and y",
+            )
+        xyz = x * luminance / y, luminance, (1 - x - y) * luminance / y
+    if (xyz is not None) + bool(colour) + (input_path is not None) != 1:
+        raise click.UsageError("Give colours, --input FILE, '-', --xyz or --xy.")
+    from uplift.extras.colour.colour_source import ColourSource
+
+    space = None if input_space is None else find_input_space(input_space)
+    return ColourSource(colour, input_path, xyz, encoded, space)
 
 
 colour_options = options.stacked(

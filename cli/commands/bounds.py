@@ -12,11 +12,10 @@ from uplift.common.files import write_text
 
 from .. import also as further
 from .. import options
-from ..colours import is_colour
 from ..output.answers import format_rgb, hex_codes, patch
 from ..output.console import print_fields, say
 from ..output.query import answer_rows
-from ..output.table import Table, print_json_rows
+from ..output.table import Format, Table, print_json_rows
 from ..outputs import check_outputs
 from ..queries import Answers, colour_options
 
@@ -44,7 +43,7 @@ class Cut(NamedTuple):
     others: Array
     """(L, 3) linear RGB under them."""
     by_light: Sequence[Bounds]
-    errors: list[Row]
+    errors: list[dict[str, Any]]
     """Standard error and error bound under each light."""
 
 
@@ -78,7 +77,9 @@ class Cut(NamedTuple):
     """,
 )
 @colour_options
-@further.also("COLOUR", is_colour, "Colour of the same thing under another light")
+@further.also(
+    "COLOUR", further.is_colour, "Colour of the same thing under another light"
+)
 @options.light("Illuminant under which the bounds are shown", "A FL11 HP1")
 @options.table_json_or_csv
 @options.plot("Plot the bounds")
@@ -106,20 +107,23 @@ def command(
     if also and (html is not None or style == "csv"):
         raise click.UsageError("--also does not apply to --html and --format csv.")
     blocks: Iterable[Block] = map(partial(_compute, answers), answers)
-    if answers.single or plot_path is not None:
-        blocks = list(blocks)
-    cut = _cut(answers, blocks[0][0], also) if also else None
+    cut = None
+    if answers.single:
+        ((results, by_light),) = blocks
+        blocks = [(results, by_light)]
+        cut = _cut(answers, results, also) if also else None
     if plot_path is not None:
         from uplift.extras.pages.plots import plot_bounds
 
-        by_light = [bounds for _, bounds in blocks]
-        drawn_inside = cut.by_light if cut else ()
-        plot_bounds(answers.cube, by_light, plot_path, cut=drawn_inside, force=force)
+        blocks = list(blocks)
+        regions = [bounds for _, bounds in blocks]
+        inner = cut.by_light if cut else ()
+        plot_bounds(answers.cube, regions, plot_path, cut=inner, force=force)
         say(f"{plot_path}: bounds", err=True)
     if html is not None:
         from uplift.extras.report.look_page import page
 
-        write_text(page(answers.cube, blocks[0][1]), html, force=force)
+        write_text(page(answers.cube, by_light), html, force=force)
         say(f"{html}: page to choose a look on", err=True)
     rows = _rows(answers, blocks, cut)
     if style == "json":
@@ -127,7 +131,6 @@ def command(
     elif style == "csv":
         Table(_csv_rows(rows)).print_csv()
     elif answers.single:
-        ((results, _),) = blocks
         _print_colours(answers.cube, results.rgb, cut)
         _print_table(answers.cube, rows, ("light", "known") if cut else ("light",))
     else:
@@ -273,7 +276,7 @@ def _print_table(cube: Cube, rows: Iterable[Row], texts: Sequence[str]) -> None:
         "b": "b* range",
         "share": "share",
     }
-    formats = {
+    formats: dict[str, Format] = {
         "lab": ".1f",
         "a": "{0[0]}..{0[1]}".format,
         "b": "{0[0]}..{0[1]}".format,

@@ -14,8 +14,9 @@ from uplift.common.text import pluralise
 
 from .. import options
 from ..inputs import DEFAULT_ATLASES, atlas_files, read_atlases
-from ..output.console import make_table, print_csv_text, print_json, say, show
+from ..output.console import say
 from ..output.progress import progress_bar
+from ..output.table import Format, Table, print_result
 from ..outputs import check_folder, write_files
 from ..startup import use_one_blas_thread
 
@@ -133,7 +134,9 @@ def command(
     elif style == "table":
         _print_table(comparison, tuned, every=every)
     else:
-        _print_records(comparison, tuned, style)
+        rows = {"representations": comparison.rows, "filters": tuned}
+        data = {"facts": dict(comparison.facts), **rows}
+        print_result(style, data, *map(Table, rows.values()))
 
 
 def _write_spectra(
@@ -215,34 +218,26 @@ def _print_table(comparison: Comparison, tuned: list[Row], *, every: bool) -> No
     from uplift.extras.pages.format import format_time
     from uplift.extras.papers.representations.compare import HEADINGS, pareto
 
+    headings = {
+        "representation": "representation",
+        "mean": "mean",
+        "median": "median",
+        "q97_5": "97.5 %",
+        "floats": "floats",
+        "light_floats": "of a light",
+        "ns": "product",
+    }
+    formats: dict[str, Format] = {"floats": ".1f", "light_floats": ".1f"}
+    formats["ns"] = format_time
     tables = []
     for name, title in comparison.sets.items():
-        numbers = ("mean", "median", "97.5 %", "floats", "of a light", "product")
-        table = make_table(("representation",), numbers, title=f"ΔE00 under {title}")
         rows = comparison.of(name)
-        for row in rows if every else pareto(rows):
-            errors = (f"{row[key]:.3f}" for key in ("mean", "median", "q97_5"))
-            floats = (f"{row[key]:.1f}" for key in ("floats", "light_floats"))
-            time = format_time(row["ns"])
-            table.add_row(row["representation"], *errors, *floats, time)
-        tables.append(table)
+        shown = rows if every else pareto(rows)
+        title = f"ΔE00 under {title}"
+        tables.append(Table(shown, headings, title, formats=formats))
     if tuned:
+        rows = sorted(tuned, key=itemgetter("lights", "samples", "mean"))
+        texts = {key: key for key in ("lights", "samples", "filter", "parameters")}
         title = "point sampling after the best low-pass filter of each kind"
-        texts = ("lights", "samples", "filter", "parameters")
-        table = make_table(texts, HEADINGS.values(), title=title)
-        for row in sorted(tuned, key=itemgetter("lights", "samples", "mean")):
-            errors = (f"{row[key]:.3f}" for key in HEADINGS)
-            table.add_row(*(str(row[key]) for key in texts), *errors)
-        tables.append(table)
-    show(*tables)
-
-
-def _print_records(comparison: Comparison, tuned: list[Row], style: str) -> None:
-    from uplift.extras.files.csv import records_csv
-
-    tables = {"representations": comparison.rows, "filters": tuned}
-    if style == "json":
-        print_json({"facts": dict(comparison.facts), **tables})
-        return
-    for table in filter(None, tables.values()):
-        print_csv_text(records_csv(table))
+        tables.append(Table(rows, texts | HEADINGS, title))
+    print_result("table", None, *tables)

@@ -15,12 +15,11 @@ from uplift.common.text import pluralise
 from uplift.extras.files.outputs import check_outputs
 
 from .. import options, sensor_options
-from ..colours import find_colours
 from ..inputs import check_range
 from ..output.answers import format_rgb, print_spectrum, sparkline
 from ..output.console import json_output, print_csv, print_json_answers, say
 from ..output.passes import print_numbers
-from ..queries import colour_sources
+from ..queries import colour_sources, find_colours
 from .info import print_facts
 from .texture import as_tuple, convert, image_options, passes_option
 

@@ -24,6 +24,7 @@ from ..paints import (
     read_target,
 )
 from ..startup import enable_jit_cache
+from .mix import command as mix
 
 if TYPE_CHECKING:
     from uplift.colorimetry.illuminants import Illuminant
@@ -61,6 +62,9 @@ paint_names = options.repeatable(
 )
 def command() -> None:
     """Hold the subcommands."""
+
+
+command.add_command(mix)
 
 
 @command.command(

@@ -13,7 +13,6 @@ from uplift.common.text import pluralise
 
 from .. import also as further
 from .. import options
-from ..colours import is_colour
 from ..output.answers import format_rgb
 from ..output.console import paragraph, print_json, say
 from ..output.passes import print_numbers
@@ -83,7 +82,9 @@ if TYPE_CHECKING:
     """,
 )
 @colour_options
-@further.also("COLOUR", is_colour, "Colour of the same thing under another light")
+@further.also(
+    "COLOUR", further.is_colour, "Colour of the same thing under another light"
+)
 @further.noise
 @further.balance
 @options.light("Illuminant under which colour and standard error are shown", "none")

@@ -15,6 +15,7 @@ from .console import (
     emit,
     has_colours,
     json_output,
+    json_row,
     paragraph,
     print_csv,
     print_json,
@@ -41,7 +42,7 @@ class Table:
     CSV has all keys; a list of numbers has a column for each letter of its key, such as
     ``rgb``. Text has the columns of ``headings``, by their keys and in this order;
     numbers are right-aligned, and a list of numbers is one cell. A value has the format
-    of its key, or else ``digits`` if it is a float.
+    of its key, or a function's text, or else ``digits`` if it is a float.
     """
 
     rows: Iterable[Row]
@@ -161,12 +162,11 @@ def print_json_rows(rows: Iterable[Row], *, single: bool) -> None:
     """Print a single row as a JSON object, or else an array of rows, each before the
     next one is computed.
     """
-    texts = map(json_output, rows)
     if single:
-        emit(*texts)
+        emit(*map(json_output, rows))
         return
     before = "[\n"
-    for text in texts:
-        sys.stdout.write(before + text)
+    for row in rows:
+        sys.stdout.write(before + json_row(row))
         before = ",\n"
     emit("\n]")

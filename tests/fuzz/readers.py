@@ -16,7 +16,6 @@ from typing import Any
 
 import numpy as np
 from PIL import Image, ImageCms
-from uplift_cli.colours import ColourSource
 
 from tests.atlas.vendor_files import VENDORS, Files, sample
 from tests.cube.cube_files import forge, header_length, with_header, with_header_length
@@ -33,6 +32,7 @@ from uplift.common.files import file_digest
 from uplift.cube.data import CubeData
 from uplift.cube.file import read, summarise
 from uplift.cube.schema import POINTS
+from uplift.extras.colour.colour_source import ColourSource
 from uplift.extras.colour.query import query
 from uplift.extras.images.converter import ImageConverter, RowConverter
 from uplift.extras.images.counts import Counts
@@ -179,8 +179,7 @@ def use_chart(path: Path) -> None:
     """Compute what pictures of the chart show, and recommend a cube."""
     chart = read_chart(path)
     for criterion in chain.from_iterable(criteria(batch) for batch in chart.batches):
-        for result in criterion.front(chart.measured):
-            criterion.labels(result)
+        criterion.front(chart.measured)
     recommend_cube(chart, Requirement(time_ns=1e5))
 
 

@@ -82,7 +82,6 @@ def test_target_is_met_and_one_wavelength_less_misses_it(spiky):
         ({"count": 41}, OptionError, "option"),
         ({"target": float("nan")}, OptionError, "option"),
         ({"count": 4, "method": "unform"}, UnknownNameError, "unknown-name"),
-        ({"target": 1, "measure": "p90"}, UnknownNameError, "unknown-name"),
     ],
 )
 def test_invalid_options_raise(smooth, options, kind, code):

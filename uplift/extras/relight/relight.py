@@ -30,7 +30,7 @@ from uplift.extras.pages.figure import RAMP, ramp_codes, write_figure
 from uplift.extras.pages.html import render, resource
 from uplift.extras.pages.marks import error_map, picture
 from uplift.extras.pages.panels import Axis, Panel, draw
-from uplift.extras.report.measures import mean_p95_max
+from uplift.extras.report.comparison import mean_p95_max
 from uplift.lookup.cube import Cube
 from uplift.lookup.node_table import prepare_products
 
@@ -274,19 +274,21 @@ def relit_page(relit: Sequence[Relit], *, adapt: bool | None = None) -> str:
         errors = [image.renderings[number].errors(image.shown_pair) for image in relit]
         changes.append(np.mean([error["mean"] for error in errors]))
     limit = map_limit(relit)
+    balanced = [rendering.is_balanced(adapt) for rendering in first.renderings]
     return render(
         "extras/relight/templates/relight_page.html.j2",
         title="Images under other lights",
         lead="RGB multiplied by the light, against spectra under the light. Drag the "
         "line, or use the arrow keys.",
         lights=[rendering.light_label for rendering in first.renderings],
-        balanced=[rendering.is_balanced(adapt) for rendering in first.renderings],
+        balanced=balanced,
+        numbers={"balanced": balanced},
         methods=first.methods,
         start=int(np.argmax(changes)),
         ticks=(0, limit // 4, limit),
         ramp=RAMP,
         sections=[_section(image, limit) for image in relit],
-        script=resource("extras/relight/relight_page.js"),
+        script=resource("extras/pages/draw.js", "extras/relight/relight_page.js"),
     )
 
 

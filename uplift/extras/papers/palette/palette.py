@@ -7,6 +7,7 @@ from typing import Literal
 
 from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Array
+from uplift.extras.files.spec import SPEC, NotNegative
 
 # Colours that goals are about: of full spectra (eq. 18), or of the factor model (eq.
 # 19).
@@ -49,9 +50,11 @@ class MinDifference:
     optimised.
     """
 
+    __pydantic_config__ = SPEC
+
     materials: tuple[str, str]
     light: str
-    delta_e: float  # ΔE00
+    delta_e: NotNegative  # ΔE00
 
 
 @dataclass(frozen=True, eq=False)

@@ -48,7 +48,6 @@ def choose(
     *,
     count: int | None = None,
     target: float | None = None,
-    measure: str = "max",
     method: str = "optimised",
 ) -> Choice:
     """Choose ``count`` wavelengths, or the fewest that meet a target.
@@ -65,9 +64,7 @@ def choose(
         Number of wavelengths, 1 to `MAX_COUNT`. Exactly one of ``count`` and ``target``
         is required.
     target : float, optional
-        Largest accepted ``measure`` of ΔE00, above 0.
-    measure : {"max", "p95", "mean"}, optional
-        Statistic over all materials under all lights that ``target`` limits.
+        Largest accepted ΔE00 of any material under any light, above 0.
     method : {"optimised", "meyer", "uniform", "bins", "fitted"}, optional
         One of `METHODS`.
 
@@ -83,9 +80,9 @@ def choose(
         without a rule of the method (``undefined-rule``), or a target that no count
         meets.
     UnknownNameError
-        The method or the measure does not exist.
+        The method does not exist.
     """
-    _check_choice(count, target, measure, method)
+    _check_choice(count, target, method)
     for number in range(1, MAX_COUNT + 1) if count is None else (count,):
         try:
             choice = _judged(method, setup, METHODS[method](setup, number))
@@ -93,11 +90,11 @@ def choose(
             if count is not None or problem.code != "undefined-rule":
                 raise
             continue
-        error = setups.statistics(choice.errors)[measure]
+        error = float(choice.errors.max())
         if target is None or error <= target:
             return choice
     missed = (
-        f"no count up to {MAX_COUNT} meets a {measure} ΔE00 of {target:g} by method "
+        f"no count up to {MAX_COUNT} meets a largest ΔE00 of {target:g} by method "
         f"'{method}'"
     )
     reached = f"{pluralise(len(choice.sampling), 'wavelength')} reach {error:.3g}"
@@ -106,14 +103,10 @@ def choose(
     )
 
 
-def _check_choice(
-    count: int | None, target: float | None, measure: str, method: str
-) -> None:
+def _check_choice(count: int | None, target: float | None, method: str) -> None:
     """Check the arguments of `choose`."""
     if method not in METHODS:
         raise unknown_name(method, METHODS, "method")
-    if measure not in setups.MEASURES:
-        raise unknown_name(measure, setups.MEASURES, "measure")
     if (count is None) == (target is None):
         raise OptionError(
             "exactly one of count and target is required", hint="give one of them"

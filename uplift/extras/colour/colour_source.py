@@ -1,20 +1,23 @@
-"""Colours from arguments, files and standard input. All raise `ColourError`."""
-
-from __future__ import annotations
+"""Colours in words, files and standard input. All raise `ColourError`."""
 
 import codecs
 import io
 import re
 import sys
+import warnings
 from collections.abc import Iterator, Sequence
+from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass
 from itertools import chain
-from typing import IO, TYPE_CHECKING, Any
+from typing import IO, Any
 
-import click
+import numpy as np
 
+from uplift.colorimetry.sensor import SLACK, Sensor
+from uplift.common.arrays import Array
 from uplift.common.errors import ColourError, UpliftWarning
 from uplift.common.text import format_value
+from uplift.extras.colour.spaces import ImageSpace
 from uplift.extras.files.csv import (
     DELIMITERS,
     find_delimiter,
@@ -22,14 +25,6 @@ from uplift.extras.files.csv import (
     parse_decimal,
     split_line,
 )
-
-from .inputs import find_input_space
-from .output.diagnostics import warn
-
-if TYPE_CHECKING:
-    from uplift.colorimetry.sensor import Sensor
-    from uplift.common.arrays import Array
-    from uplift.extras.colour.spaces import ImageSpace
 
 AMBIGUOUS = re.compile(r"(?:[01](?:,\d+)?,){2}[01](?:,\d+)?", re.ASCII)
 """Whole numbers between commas that may be three numbers from 0 to 1 with decimal
@@ -96,7 +91,7 @@ class ColourSource:
             return
         name = "standard input" if self.path == "-" else self.path
         try:
-            with click.open_file(self.path, "rb") as file:
+            with _open(self.path) as file:
                 yield from self.parse_table(file, name, sensor, bounded)
         except OSError as error:
             problem = f"cannot be read: {error.strerror}"
@@ -112,8 +107,6 @@ class ColourSource:
         decimal commas. A first line without numbers is a header. Further columns are
         ignored.
         """
-        from uplift.colorimetry.sensor import SLACK
-
         numbers = (
             (-SLACK, 1 + SLACK)
             if bounded
@@ -175,8 +168,6 @@ class ColourSource:
 
     def _linear(self, colours: Sequence[Colour], sensor: Sensor) -> Array:
         """Decode codes, and convert colours of another space to the sensor's."""
-        import numpy as np
-
         space = self.space
         values = np.array([numbers for numbers, _ in colours], dtype=float)
         codes = np.array([self.encoded or is_hex for _, is_hex in colours])
@@ -197,38 +188,8 @@ def is_colour(text: str) -> bool:
     return _parse(text.split(",")) is not None
 
 
-def find_colours(
-    colour: tuple[str, ...],
-    input_path: str | None,
-    xyz: tuple[float, float, float] | None,
-    xy: tuple[float, float] | None,
-    luminance: float | None,
-    encoded: bool,
-    input_space: str | None,
-) -> ColourSource:
-    """Return the source that the values of `colour_sources` name. Raises click's error
-    for none or several.
-    """
-    if colour == ("-",):
-        colour = ()
-        input_path = input_path or "-"
-    if (xy is None) != (luminance is None) or (xyz is not None and xy is not None):
-        raise click.UsageError(
-            "--xy X Y and --luminance Y require each other, and --xyz is an "
-            "alternative."
-        )
-    if xy is not None and luminance is not None:
-        x, y = xy
-        if not y > 0:
-            raise ColourError(
-                f"y of a chromaticity must be positive, got {y:g}",
-                hint="give CIE x and y",
-            )
-        xyz = x * luminance / y, luminance, (1 - x - y) * luminance / y
-    if (xyz is not None) + bool(colour) + (input_path is not None) != 1:
-        raise click.UsageError("Give colours, --input FILE, '-', --xyz or --xy.")
-    space = None if input_space is None else find_input_space(input_space)
-    return ColourSource(colour, input_path, xyz, encoded, space)
+def _open(path: str) -> AbstractContextManager[IO[bytes]]:
+    return nullcontext(sys.stdin.buffer) if path == "-" else open(path, "rb")
 
 
 def _line_blocks(file: IO[bytes], name: str) -> Iterator[list[tuple[int, str]]]:
@@ -336,7 +297,7 @@ def _warn_of_fractions(colours: Sequence[Colour]) -> None:
         codes = " ".join(f"{255 * value:.0f}" for value in values[:3])
         problem = f"8-bit codes run from 0 to 255, got numbers up to {max(values):g}"
         hint = f"for encoded numbers from 0 to 1 give 255 times as much: {codes}"
-        warn([UpliftWarning(problem, hint=hint)])
+        warnings.warn(UpliftWarning(problem, hint=hint), stacklevel=2)
 
 
 def _not_a_colour(text: str, **place: Any) -> ColourError:
