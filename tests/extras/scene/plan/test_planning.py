@@ -116,6 +116,11 @@ def planned_for(tmp_path, rgb, lights=LIGHTS, **values):
     return plan.plan(scene, SMALL)
 
 
+def test_a_tolerance_that_no_candidate_meets_is_refused(tmp_path):
+    with raises(PlanFileError, "no-candidate"):
+        planned_for(tmp_path, np.zeros((20, 20, 3)) + 0.3, limits={"samples": 2})
+
+
 def test_a_scene_under_the_light_of_its_space_needs_no_spectra(tmp_path):
     found = planned_for(tmp_path, painted(), ("D65",))
     assert found.chosen.rendering is None
