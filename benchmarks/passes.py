@@ -15,6 +15,7 @@ import uplift
 from benchmarks import DOCS, Row
 from benchmarks.browser import browser
 from benchmarks.checker import chart
+from benchmarks.passes_page import page
 from uplift.colorimetry import observer
 from uplift.common.arrays import Array
 from uplift.common.files import write_text
@@ -26,7 +27,6 @@ from uplift.extras.papers.wavelengths.choice import choose
 from uplift.extras.papers.wavelengths.sampling import grid, make_setup
 from uplift.extras.scene import passes as library
 from uplift.extras.scene.passes.bands import CHANNELS, Bands
-from uplift.extras.scene.passes.browser_page import page
 from uplift.extras.scene.passes.choice import judging_paths
 from uplift.extras.scene.passes.materials import Materials
 from uplift.extras.scene.passes.passes import Passes

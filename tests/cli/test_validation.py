@@ -181,8 +181,6 @@ file-exists passes choose -o mine
 file-not-found passes decode fire.exr fire.exr --passes none.toml -o x.exr
 invalid-file passes decode fire.exr fire.exr --passes palette.toml -o x.exr
 file-not-found passes info none.toml
-file-not-found passes page none.toml -o x.html
-output passes page palette.toml -o x.txt
 file-not-found passes recipe none.toml
 invalid-file passes recipe palette.toml --for nuke
 file-not-found texture wood.png -o x --passes none.toml

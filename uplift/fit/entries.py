@@ -200,11 +200,8 @@ def fit_entries(
 
 def _errors(problem: Problem, multipliers: Array, measured: Array) -> Array:
     """ΔE00 (E,) between fitted and measured spectra under the light of the errors."""
-    spectra = np.asarray(
-        problem.model.to_reflectance(multipliers @ problem.forward.basis.T)
-    )
-    light = problem.error_light or problem.sensor.light
-    return delta_e_spectra(light, spectra, measured)
+    spectra = problem.model.to_reflectance(multipliers @ problem.forward.basis.T)
+    return delta_e_spectra(problem.light_of_errors, spectra, measured)
 
 
 def with_multipliers(
@@ -216,10 +213,3 @@ def with_multipliers(
     error = entries.error.copy()
     error[rows] = _errors(problem, multipliers, entries.measured[rows])
     return entries._replace(multipliers=changed, error=error)
-
-
-def join_entries(*parts: FittedEntries) -> FittedEntries:
-    """Put entries after one another."""
-    return FittedEntries(
-        *(np.concatenate(columns) for columns in zip(*parts, strict=True))
-    )

@@ -20,12 +20,12 @@ from uplift.colorimetry import observer
 from uplift.colorimetry.sensor import Light, Sensor, in_unit_cube
 from uplift.common.arrays import Array, Indices
 from uplift.extras.colour.light_sets import HELD_OUT_LIGHTS
-from uplift.extras.report.measures import (
-    check_calibration,
+from uplift.extras.report.comparison import (
     delta_e_under,
     mean_p95_max,
     rms_difference,
 )
+from uplift.extras.report.measures import check_calibration
 from uplift.fit.families import shipped_library
 
 ALL_LIGHTS = "all"

@@ -21,12 +21,12 @@ from uplift.extras.paint.recipes import PaintTarget, match
 SENSOR = observer.sensor(wavelengths=(400, 700, 10))
 DIFFERENCES = """
 import { readFileSync } from "node:fs";
-const code = readFileSync(process.argv[2], "utf8");
-const { toLab, deltaE } = new Function(`${code}; return { toLab, deltaE };`)();
+const code = process.argv.slice(2).map(path => readFileSync(path, "utf8")).join("");
+const { xyzToLab, deltaE } = new Function(`${code}; return { xyzToLab, deltaE };`)();
 const { pairs, colours, white } = JSON.parse(readFileSync(0, "utf8"));
 const errors = pairs.map(row => deltaE(row.slice(0, 3), row.slice(3, 6)));
 const back = pairs.map(row => deltaE(row.slice(3, 6), row.slice(0, 3)));
-const labs = colours.map(xyz => toLab(xyz, white));
+const labs = colours.map(xyz => xyzToLab(xyz, white));
 console.log(JSON.stringify({ errors, back, labs }));
 """
 
@@ -172,11 +172,12 @@ def test_differences_in_javascript_are_ciede2000(repository, tmp_path):
     white = SENSOR.light.white
     given = {"pairs": pairs, "colours": colours, "white": white}
     (tmp_path / "differences.mjs").write_text(DIFFERENCES)
-    script = repository / "uplift" / "extras" / "paint" / "colour_difference.js"
+    extras = repository / "uplift" / "extras"
     answer = output_of(
         "node",
         tmp_path / "differences.mjs",
-        script,
+        extras / "pages" / "lab.js",
+        extras / "paint" / "colour_difference.js",
         input=json.dumps({name: values.tolist() for name, values in given.items()}),
     )
     found = json.loads(answer)

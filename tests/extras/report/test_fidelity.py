@@ -11,16 +11,15 @@ from numpy.testing import assert_allclose, assert_array_equal
 import uplift
 from tests.helpers import with_points, without_evidence
 from uplift.atlas.resampling import on_grid
-from uplift.colorimetry.observer import display_sensors, light
+from uplift.colorimetry.observer import light
 from uplift.extras.report.assessment import assess
 from uplift.extras.report.crowding import find_crowding
-from uplift.extras.report.fidelity import (
+from uplift.extras.report.entries import (
     JAKOB_HANIKA,
     WITHOUT_ATLAS,
     entry_errors,
     find_alternatives,
-    from_stored_entries,
-    take,
+    own_entries,
 )
 from uplift.extras.report.measures import (
     MAX_LISTED,
@@ -61,7 +60,7 @@ def test_entry_errors_match_colour_science(judged, small_cube, macbeth):
             continue
         own = atlas.names.index(name)
         answered = small_cube.reflectance(atlas.rgb[own])
-        assert found.answers.spectra[row] == pytest.approx(answered, abs=1e-12)
+        assert found.answers.answers[row] == pytest.approx(answered, abs=1e-12)
         assert found.answers.rms[row] == pytest.approx(
             np.sqrt(np.mean((answered - measured[name]) ** 2)), rel=1e-9
         )
@@ -86,8 +85,14 @@ def test_lattice_errors_are_those_of_the_lattice_without_the_entries(
         zip(macbeth.names, on_grid(macbeth, data.sensor.wavelengths), strict=True)
     )
     inside = [row for row, name in enumerate(found.names) if name != OUTSIDE]
-    spectra = lattice_spectra(data, found.rgb[inside], data.sensor.wavelengths)
-    assert_allclose(found.lattice.spectra[inside], spectra, atol=1e-12)
+    spectra = lattice_spectra(
+        data.model,
+        data.lattice,
+        data.points,
+        found.rgb[inside],
+        data.sensor.wavelengths,
+    )
+    assert_allclose(found.lattice.answers[inside], spectra, atol=1e-12)
     for row, spectrum in zip(inside, spectra, strict=True):
         missed = [
             delta_e(spectrum, measured[found.names[row]], sensor.illuminant)
@@ -139,10 +144,8 @@ def test_smoothness_matches_explicit_loops(small_cube, small_sigmoid_cube):
 
 def test_crowding_matches_brute_force(crowded_cube):
     data = crowded_cube.data
-    lights = display_sensors(("A",), crowded_cube.data.sensor.observer)
-    found = find_crowding(
-        data, entry_errors(crowded_cube, from_stored_entries(data), lights)
-    )
+    errors = entry_errors(crowded_cube, own_entries(data), [light("A")])
+    found = find_crowding(data, errors)
     nodes = data.lattice.nodes
     names = data.atlas.names
     steps = np.interp(data.atlas.rgb, nodes, np.arange(len(nodes)))
@@ -256,7 +259,7 @@ def test_all_have_the_colours_of_the_entries(judged):
     sensor = judged.data.sensor
     for other in judged.alternatives.values():
         inside = np.array(judged.entries.names) != OUTSIDE
-        spectra = other.spectra[inside]
+        spectra = other.answers[inside]
         assert_allclose(
             sensor.rgb(spectra), judged.entries.rgb[inside], rtol=0, atol=2e-3
         )
@@ -265,7 +268,7 @@ def test_all_have_the_colours_of_the_entries(judged):
 
 
 def test_jakob_hanika_is_a_sigmoid_of_a_parabola(judged):
-    answer = judged.alternatives[JAKOB_HANIKA].spectra
+    answer = judged.alternatives[JAKOB_HANIKA].answers
     t = 2 * answer - 1
     linear = t / np.sqrt(1 - t**2)  # inverse of equation 5
     wavelengths = judged.data.sensor.wavelengths
@@ -284,16 +287,15 @@ def test_the_atlas_helps(judged):
 
 
 def test_colours_outside_srgb_have_no_answer(judged):
-    inside = take(
-        judged.entries, np.flatnonzero(np.array(judged.entries.names) != OUTSIDE)
+    inside = judged.entries.take(
+        np.flatnonzero(np.array(judged.entries.names) != OUTSIDE)
     )
-    target = inside.target.copy()
+    target = inside.answers.expected.copy()
     target[0] = np.where(judged.data.sensor.wavelengths > 600, 1.0, 0.0)
-    errors = dataclasses.replace(inside, target=target)
-    other = find_alternatives(
-        judged.data, errors, display_sensors(("A",), judged.data.sensor.observer)
-    )[WITHOUT_ATLAS]
+    answers = dataclasses.replace(inside.answers, expected=target)
+    errors = dataclasses.replace(inside, answers=answers)
+    other = find_alternatives(judged.data, errors, [light("A")])[WITHOUT_ATLAS]
     assert np.isnan(other.delta_e[0]).all()
-    assert np.isnan(other.spectra[0]).all()
+    assert np.isnan(other.answers[0]).all()
     assert np.isfinite(other.delta_e[1:]).all()
     assert np.isfinite(other.answered).all()

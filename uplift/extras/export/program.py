@@ -82,7 +82,6 @@ RUNTIME_WORDS = {
     "UP_ROW_OF(index)": "index",
     "UP_SELDOM ": "UP_FUNCTION ",
     "UP_SAMPLE_ROOM": "UP_SAMPLES",
-    "UP_ALIASES\n": "#define up_find up_locate\n#define up_answer up_blend\n",
 }
 """Words of the source that are macros in the reader of cube files, and what programs
 with the numbers of one cube have instead.

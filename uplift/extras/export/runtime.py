@@ -15,6 +15,7 @@ from typing import Any
 from uplift.common.arrays import StrPath
 from uplift.common.files import write_text
 from uplift.cube.file import FEATURES, VERSION
+from uplift.cube.schema import ARRAYS
 from uplift.extras.export.program import LANGUAGES, read_calls
 from uplift.extras.export.program_table import MOVES, TEXEL
 from uplift.extras.export.source import literal, read_source
@@ -87,6 +88,26 @@ SPARSE = [
 enough for every cube.
 """
 KERNELS = SIGMOIDS + MOMENTS + SPARSE
+READ = (
+    "nodes",
+    "points",
+    "coefficients",
+    "distance",
+    "standard_error",
+    "atlas.rgb",
+    "atlas.reach",
+    "atlas.error",
+    "atlas.coefficients",
+    "atlas.entry_coefficients",
+    "sensor.wavelengths",
+    "sensor.cmfs",
+    "sensor.power",
+    "sensor.xyz_to_rgb",
+    "sensor.sensitivities",
+)
+"""Arrays of a cube file that lookups need."""
+TYPES = ("float64", "float32", "uint8", "int32", "int16", "uint32")
+"""Types of arrays, in the order of the reader."""
 ROUNDS = 64
 """Steps of SHA-256 for a block."""
 PER_LINE = 8
@@ -128,8 +149,23 @@ def _reader_words() -> dict[str, Any]:
         "constants": _words_of_hash(_root_fraction(prime, 3) for prime in primes),
         "start": _words_of_hash(_root_fraction(prime, 2) for prime in primes[:8]),
         "features": ", ".join(f'"{feature}"' for feature in FEATURES),
+        "arrays": ",\n    ".join(map(_array_word, READ)),
+        "schema": ",".join(map(_schema_row, READ)),
         "warps": ", ".join(warps),
     }
+
+
+def _array_word(name: str) -> str:
+    return f"UPLIFT_{name.upper().replace('.', '_')}"
+
+
+def _schema_row(name: str) -> str:
+    """Return the row of an array in the schema of the reader."""
+    stored = ARRAYS[name]
+    types = sum(1 << TYPES.index(kind) for kind in stored.types)
+    feature = FEATURES.index(stored.feature) + 1 if stored.feature else 0
+    low, high = map(repr, (stored.low, stored.high))
+    return f'\n    {{"{name}", "{stored.shape}", {types}, {low}, {high}, {feature}}}'
 
 
 def _kernel_row(kernel: Kernel) -> str:

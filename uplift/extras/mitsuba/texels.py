@@ -24,8 +24,9 @@ from uplift.extras.texture.encodings import Multipliers
 from uplift.extras.texture.uplifter import Uplifter, prepare
 from uplift.lookup.blocks import blockwise
 from uplift.lookup.cube import Cube
+from uplift.models.duality import blended_multipliers
 from uplift.models.model import Model, evaluate
-from uplift.models.moments import Moments, multipliers_of_rounded
+from uplift.models.moments import Moments
 from uplift.models.registry import from_description
 
 MEAN_WAVELENGTHS = np.arange(380.0, 781.0, 25.0)
@@ -46,6 +47,10 @@ Fichet et al. 2021.
 """
 WAVELENGTH = re.compile(r"(\d+)(?:,(\d+))?nm")
 NUMBERED = re.compile(r"(moment|multiplier)\.\d+")
+GREY_WEIGHTS = (1e-8, 1e-6, 1e-4, 1e-3, 1e-2)
+"""Weights of grey that rounded moments are mixed with, in turn, until they are those of
+a reflectance.
+"""
 EVEN = 1e-3
 """Tolerance of equidistant wavelengths in nm."""
 
@@ -291,7 +296,8 @@ def _model(description: str, count: int) -> Model:
 
 
 def _multipliers(model: Moments, moments: Array) -> Array:
-    multipliers, valid = multipliers_of_rounded(model, moments.astype(float))
+    # Rounding can move moments of saturated colours out of the moment space.
+    multipliers, valid = blended_multipliers(moments.astype(float), GREY_WEIGHTS)
     if not valid.all():
         raise TextureError(
             "the moments of a texel belong to no reflectance in [0, 1]",

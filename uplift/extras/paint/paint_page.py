@@ -2,6 +2,8 @@
 opaque and as a film on white and black, under three lights, and recipes for a colour.
 """
 
+from typing import Any
+
 import numpy as np
 
 from uplift.colorimetry import observer
@@ -15,8 +17,8 @@ from uplift.extras.paint.paints import Paints
 LIGHTS = ("D65", "A", "FL11")
 WAVELENGTHS = (400.0, 700.0, 10.0)
 SCRIPTS = (
-    "extras/pages/page.js",
     "extras/pages/draw.js",
+    "extras/pages/lab.js",
     "extras/paint/colour_difference.js",
     "extras/paint/paint_mixture.js",
     "extras/paint/paint_recipes.js",
@@ -56,6 +58,7 @@ def page_numbers(paints: Paints) -> dict[str, object]:
     """Return what the scripts of the page need of paints and lights."""
     screen = observer.sensor(wavelengths=WAVELENGTHS)
     sampled = paints.at(screen.wavelengths)
+    lights = [_light(name, screen) for name in LIGHTS]
     return {
         "names": paints.names,
         "wavelengths": screen.wavelengths.tolist(),
@@ -63,11 +66,12 @@ def page_numbers(paints: Paints) -> dict[str, object]:
         "scattering": sampled.pigments.scattering.tolist(),
         "outside": paints.surface.outside,
         "inside": paints.surface.inside,
-        "lights": [_light(name, screen) for name in LIGHTS],
+        "lights": lights,
+        "toXyz": np.linalg.inv(lights[0]["toRgb"]).tolist(),
     }
 
 
-def _light(name: str, screen: Sensor) -> dict[str, object]:
+def _light(name: str, screen: Sensor) -> dict[str, Any]:
     """Return weights to XYZ and, with the white adapted, to linear sRGB."""
     light = observer.light(name, observer.DEFAULT_OBSERVER, *WAVELENGTHS)
     to_rgb = screen.xyz_to_rgb @ bradford(light.white, screen.light.white)

@@ -6,7 +6,7 @@ import numpy as np
 
 from uplift.common.arrays import Array, Indices
 from uplift.cube.data import CubeData
-from uplift.extras.report.fidelity import EntryErrors, take
+from uplift.extras.report.entries import EntryErrors
 
 # lattice steps; two entries of one cell are never farther apart
 MAX_DISTANCE = 1 + 1e-9
@@ -28,22 +28,23 @@ class Crowding:
     lost: tuple[tuple[str, str], ...]
 
 
-def find_crowding(data: CubeData, entries: EntryErrors) -> Crowding:
+def find_crowding(data: CubeData, errors: EntryErrors) -> Crowding:
     """Find the entries that have another one within a lattice step."""
     names = data.atlas.names
     nearest, distances = _nearest(data.lattice.to_steps(data.atlas.rgb))
     row_of = {name: row for row, name in enumerate(names)}
-    entries = take(
-        entries, [row for row, name in enumerate(entries.names) if name in row_of]
+    errors = errors.take(
+        [row for row, name in enumerate(errors.names) if name in row_of]
     )
-    assert entries.lattice is not None
-    rows = np.array([row_of[name] for name in entries.names])
-    order = np.argsort(-entries.lattice.worst, kind="stable")
-    kept = order[distances[rows[order]] <= MAX_DISTANCE]
+    assert errors.lattice is not None
+    errors = errors.take(errors.lattice.worst_rows(len(errors.names)))
+    rows = np.array([row_of[name] for name in errors.names], dtype=np.int64)
+    close = distances[rows] <= MAX_DISTANCE
+    rows = rows[close]
     return Crowding(
-        take(entries, kept),
-        tuple(names[other] for other in nearest[rows[kept]]),
-        distances[rows[kept]],
+        errors.take(np.flatnonzero(close)),
+        tuple(names[other] for other in nearest[rows]),
+        distances[rows],
         _lost(data),
     )
 

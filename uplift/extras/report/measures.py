@@ -1,43 +1,19 @@
 """Failures of a build, smoothness, round trips, calibration of errors."""
 
-from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from uplift.colorimetry.delta_e import delta_e_rgb, delta_e_spectra
+from uplift.colorimetry.delta_e import delta_e_rgb
 from uplift.colorimetry.likely_errors import COVERAGE
-from uplift.colorimetry.sensor import Light
 from uplift.common.arrays import Array
 from uplift.cube.data import CubeData
 from uplift.lattice.point_table import Status
 from uplift.lookup.cube import Cube
 from uplift.lookup.interpolate import MODES
 from uplift.models.model import reflectance
-
-
-def delta_e_under(lights: Iterable[Light], first: Array, second: Array) -> Array:
-    """Compute ΔE00 (n, L) under lights between reflectances (n, N)."""
-    return np.stack([delta_e_spectra(light, first, second) for light in lights], axis=1)
-
-
-def rms_difference(first: Array, second: Array) -> Array:
-    """Compute the rms difference (n,) between reflectances (n, N)."""
-    return np.sqrt(((first - second) ** 2).mean(axis=1))
-
-
-def mean_p95_max(delta_e: Array) -> dict[str, float]:
-    """Summarise ΔE00 by the mean, the value that 95 % stay within, and the largest
-    value.
-    """
-    return {
-        "mean": float(delta_e.mean()),
-        "p95": float(np.quantile(delta_e, 0.95)),
-        "max": float(delta_e.max()),
-    }
-
 
 MAX_LISTED = 24  # nodes over the threshold that a report lists
 
@@ -55,22 +31,20 @@ def collect_failures(data: CubeData) -> dict[str, Any]:
     failed = np.isin(points.status, (Status.UNFITTED, Status.UNREALISABLE))
     rows = np.flatnonzero(failed | ~(points.distance <= data.threshold))
     worst = rows[np.argsort(-points.distance[rows], kind="stable")][:MAX_LISTED]
-    columns = zip(
-        data.lattice.points[worst],
-        points.rgb[worst],
-        points.distance[worst],
-        strict=True,
-    )
+    listed = [
+        {
+            "rgb": data.lattice.points[row],
+            "lattice_rgb": points.rgb[row],
+            "distance": points.distance[row],
+        }
+        for row in worst
+    ]
+    left_out = recorded.get("left_out", ()) if data.atlas.outside is None else ()
     return {
         "over_threshold": len(rows),
-        "worst": [
-            dict(zip(("rgb", "lattice_rgb", "distance"), row, strict=True))
-            for row in columns
-        ],
+        "worst": listed,
         "improvements": tuple(recorded.get("improvements", ())),
-        "left_out": tuple(recorded.get("left_out", ()))
-        if data.atlas.outside is None
-        else (),
+        "left_out": tuple(left_out),
         "skipped": tuple(recorded.get("skipped", ())),
         "smoothed": tuple(recorded.get("smoothed", ())),
         "softened": recorded.get("softened", 0),

@@ -22,8 +22,9 @@ from uplift.common.errors import AtlasError, OptionError
 from uplift.common.progress import ProgressCallback, ignore_progress, reported
 from uplift.extras.colour.light_sets import REPORT_LIGHTS
 from uplift.extras.papers.representations import samples
-from uplift.extras.report.measures import delta_e_under, rms_difference
+from uplift.extras.report.comparison import delta_e_under, rms_difference
 from uplift.lab.runner import Row, named_lights
+from uplift.lab.study.unmirrored import fourier_basis, try_complex_multipliers
 from uplift.models import duality
 from uplift.models.moments import Moments
 
@@ -92,13 +93,9 @@ class Technique:
 
     def reconstruct(self, moments: Complex | Array, wavelengths: ArrayLike) -> Array:
         """Bounded maximum-entropy reflectances (n, N) of moments (n, C)."""
-        solve = (
-            duality.try_multipliers
-            if self.mirrored
-            else duality.try_complex_multipliers
-        )
+        solve = duality.try_multipliers if self.mirrored else try_complex_multipliers
         multipliers = duality.multipliers_from_moments(moments, solve)
-        waves = duality.fourier_basis(self.phase(wavelengths), moments.shape[1])
+        waves = fourier_basis(self.phase(wavelengths), moments.shape[1])
         return 0.5 + np.arctan((multipliers @ waves.T).real) / np.pi
 
 

@@ -17,7 +17,7 @@ from uplift.common.errors import OptionError, UpliftWarning
 from uplift.common.progress import ProgressCallback, ignore_progress, reported
 from uplift.cube.data import CubeData
 from uplift.extras.colour.light_sets import NARROW_BAND_LIGHT
-from uplift.extras.report.measures import delta_e_under, rms_difference
+from uplift.extras.report.comparison import delta_e_under, rms_difference
 from uplift.lab.runner import Row
 from uplift.lookup.cube import Cube
 from uplift.lookup.interpolate import MODES

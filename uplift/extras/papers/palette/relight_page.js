@@ -1,6 +1,6 @@
 // Inverse of `pack` of relight_page.py: base64 of deflated byte planes, the first bytes of all numbers before the second ones.
 async function unpackBytes(id, width) {
-  const text = atob(document.getElementById(id).textContent);
+  const text = atob(byId(id).textContent);
   const deflated = Uint8Array.from(text, letter => letter.charCodeAt(0));
   const stream = new Blob([deflated]).stream().pipeThrough(new DecompressionStream("deflate"));
   const planes = new Uint8Array(await new Response(stream).arrayBuffer());
@@ -75,7 +75,6 @@ function clampToDisc([x, y]) {
 }
 // Drawing of the dial and of the spectrum.
 const DISC = 84;
-const SPECTRUM = { left: 8, right: 312, top: 4, bottom: 78 };
 
 // Disc in the colours of white under each mix, scaled to the display; lights around it; handle.
 function drawDial(names, white) {
@@ -121,33 +120,17 @@ function showDial([x, y], text, strongest) {
   byId("dial").setAttribute("aria-valuenow", Math.round(100 * strongest));
 }
 
-// Axis and ticks. `showSpectrum` adds a line for each light and an area for their sum.
-function drawSpectrum(wavelengths) {
-  const { left, right, bottom } = SPECTRUM;
-  const [first, last] = [wavelengths[0], wavelengths.at(-1)];
-  const toX = nm => left + ((right - left) * (nm - first)) / (last - first);
-  const ticks = [400, 500, 600, 700].filter(nm => nm >= first && nm <= last);
-  const label = nm => (nm === ticks[0] ? `${nm} nm` : nm);
-  const marks = ticks.map(nm => createSvg("text", { x: toX(nm), y: bottom + 14, "text-anchor": "middle" }, label(nm)));
-  const lines = ticks.map(nm => createSvg("path", { d: `M${toX(nm)} ${bottom}v4`, class: "axis" }));
-  const axis = createSvg("path", { id: "zero", class: "axis" });
-  byId("spectrum").append(createSvg("path", { id: "total" }), createSvg("g", { id: "parts" }), axis, ...lines, ...marks);
-}
-
-// The power of a designed light may be negative where its bounds allow it.
+// A line for each light, and an area for their sum. The power of a designed light may be negative where its bounds allow it.
 function showSpectrum(wavelengths, power, weights) {
-  const { left, right, top, bottom } = SPECTRUM;
   const parts = power.map((values, j) => values.map(value => weights[j] * value));
   const total = weightedSum(weights, power);
-  const lowest = Math.min(0, ...total);
-  const step = (right - left) / (wavelengths.at(-1) - wavelengths[0]);
-  const scale = (bottom - top) / Math.max(Math.max(...total) - lowest, 1e-9);
-  const toX = nm => (left + step * (nm - wavelengths[0])).toFixed(1);
-  const toY = value => (bottom - scale * (value - lowest)).toFixed(1);
-  const line = values => "M" + values.map((value, i) => `${toX(wavelengths[i])} ${toY(value)}`).join("L");
-  byId("zero").setAttribute("d", `M${left} ${toY(0)}H${right}`);
-  byId("total").setAttribute("d", `${line(total)}L${right} ${toY(0)}L${left} ${toY(0)}Z`);
-  byId("parts").replaceChildren(...parts.map(values => createSvg("path", { d: line(values) })));
+  const low = Math.min(0, ...total);
+  const box = { ...CURVE, low, high: Math.max(low + 1e-9, ...total) };
+  const { left, right, top, bottom, high } = box;
+  const zero = bottom + ((bottom - top) * low) / (high - low);
+  byId("zero").setAttribute("d", `M${left} ${zero}H${right}`);
+  byId("curve").setAttribute("d", `${curve(wavelengths, total, box)}L${right} ${zero}L${left} ${zero}Z`);
+  byId("parts").replaceChildren(...parts.map(values => createSvg("path", { d: curve(wavelengths, values, box) })));
 }
 // State: position of the dial, sliders of the lights, exposure. Each frame shows the picture for the current state.
 const numbers = JSON.parse(byId("numbers").textContent);
@@ -161,14 +144,12 @@ const [pixels, labels] = await Promise.all([unpackHalves("pixels"), unpackBytes(
 const gains = lights.map((_, j) => byId(`gain-${j}`));
 const exposure = byId("exposure");
 let position = START;
-let frame = 0;
 
 const percent = share => `${Math.round(100 * share)} %`;
 const weights = () => shares(position, positions).map((share, j) => (share * gains[j].value) / 100);
 
 // One frame: the picture first, then the texts. Exposure scales the display, not the lights.
 function show() {
-  frame = 0;
   const mix = weights();
   const stops = 2 ** exposure.value;
   const source = weightedSum(mix, numbers.light);
@@ -206,9 +187,7 @@ function patch(name, ...halves) {
   byId(`mixed-${name}-text`).textContent = [...new Set(texts)].join(" | ");
 }
 
-function requestFrame() {
-  frame ||= requestAnimationFrame(show);
-}
+const requestFrame = frameOf(show);
 
 function move(to) {
   position = clampToDisc(to);
@@ -221,28 +200,13 @@ function selectLight(j) {
 }
 
 const dial = byId("dial");
-function follow(event) {
-  const point = new DOMPoint(event.clientX, event.clientY).matrixTransform(dial.getScreenCTM().inverse());
-  move([point.x / DISC, point.y / DISC]);
-}
-dial.addEventListener("pointerdown", event => {
-  dial.setPointerCapture(event.pointerId);
-  follow(event);
-});
-dial.addEventListener("pointermove", event => {
-  if (dial.hasPointerCapture(event.pointerId)) follow(event);
-});
-
-const DIRECTIONS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] };
-dial.addEventListener("keydown", event => {
-  if (event.ctrlKey || event.altKey || event.metaKey) return;
-  const direction = DIRECTIONS[event.key];
-  const step = event.shiftKey ? 0.2 : 0.02;
-  if (direction) move([position[0] + step * direction[0], position[1] + step * direction[1]]);
-  else if (event.key === "0") move([0, 0]);
-  else if (event.key >= "1" && event.key <= "9" && event.key <= lights.length) move(positions[event.key - 1]);
-  else return;
-  event.preventDefault();
+onDrag(dial, event => move(placeIn(dial, event).map(place => place / DISC)));
+onKey(dial, (key, arrow, shift) => {
+  const step = shift ? 0.2 : 0.02;
+  if (arrow) move(position.map((place, axis) => place + step * arrow[axis]));
+  else if (key === "0") move([0, 0]);
+  else if (key >= "1" && key <= "9" && key <= lights.length) move(positions[key - 1]);
+  else return false;
 });
 
 for (const slider of [...gains, exposure]) slider.addEventListener("input", requestFrame);
@@ -254,9 +218,8 @@ byId("reset").addEventListener("click", () => {
 });
 
 drawDial(lights, white);
-drawSpectrum(wavelengths);
 show();
-document.querySelector("main").setAttribute("aria-busy", "false");
+ready();
 // Highlighting: pointing at a name dims the other materials in the picture; pointing at the picture shows the name.
 const mask = byId("mask").getContext("2d");
 const names = [...document.querySelectorAll("[data-material]")];

@@ -234,8 +234,8 @@ def _build_options(values: Any) -> dict[str, Any]:
                 raise unknown_name(name, known, "option")
         recorded = recorded_options(values)
         options = Options(**recorded)
-        observer.matching_functions(options.observer)
-        problem_of(options, options.observer, options.solver)
+        observer.matching_functions(str(options.observer))
+        problem_of(options)
     return recorded
 
 

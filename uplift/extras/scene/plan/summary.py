@@ -14,11 +14,11 @@ from uplift.common.files import file_digest
 from uplift.common.text import pluralise
 from uplift.common.version import version
 from uplift.extras.pages.format import format_error, format_size
-from uplift.extras.scene.plan.candidates import INDEX, Candidate, Cost, cheapest_first
+from uplift.extras.scene.plan.candidates import INDEX, SPECTRUM, Candidate, Cost
 from uplift.extras.scene.plan.files import FORMAT, SUFFIX, SceneFile, cube_name
 from uplift.extras.scene.plan.passes_advice import PassesAdvice
 from uplift.extras.scene.plan.planning import Plan, cost_text
-from uplift.extras.texture.encodings import Spectrum
+from uplift.extras.scene.plan.search import cheapest_first
 
 HEADINGS = ("ΔE00", "memory", "time", "samples", "cube", "traced", "pixel")
 CLEARLY_SMALLER = 0.95
@@ -217,17 +217,12 @@ def _candidate_json(candidate: Candidate) -> dict[str, Any]:
 
 
 def _rendering_json(plan: Plan) -> dict[str, Any]:
-    """Wavelengths and their weights, the name of a representation, or
-    matrices of RGB.
-    """
+    """Wavelengths, their weights and the powers of lights, or matrices of RGB."""
     if plan.chosen.rendering is None:
-        return {
-            "rgb_to_xyz": dict(
-                zip(map(str, plan.scene.lights), plan.matrices.tolist(), strict=True)
-            )
-        }
-    if (sampling := plan.chosen.rendering.sampling) is None:
-        return {"representation": plan.chosen.rendering.name}
+        lights = map(str, plan.scene.lights)
+        matrices = dict(zip(lights, plan.matrices.tolist(), strict=True))
+        return {"rgb_to_xyz": matrices}
+    sampling = plan.chosen.rendering.sampling
     powers = dict(zip(sampling.lights, sampling.powers.tolist(), strict=True))
     return {
         "wavelengths": sampling.wavelengths.tolist(),
@@ -268,8 +263,9 @@ def commands(plan: Plan, path: Path) -> tuple[str, ...]:
     words = ["uplift", "texture", *map(str, scene.textures), "-o", target]
     words += ["--cube", cube, "--representation", pixel.form, "--depth", pixel.depth]
     rendering = plan.chosen.rendering
-    if pixel.form == Spectrum.name and rendering is not None and rendering.sampling:
-        words += ["--wavelengths", ",".join(map("{:g}".format, rendering.wavelengths))]
+    if pixel.form == SPECTRUM and rendering is not None:
+        nm = map("{:g}".format, rendering.sampling.wavelengths)
+        words += ["--wavelengths", ",".join(nm)]
     if scene.encoding != SceneFile.encoding:
         words += ["--encoding", scene.encoding]
     return build, shlex.join(words)

@@ -4,10 +4,6 @@ const canvas = byId("picture");
 const MAX_SAMPLES = 600;
 const BRIGHTNESS = 3.5;
 
-const FULL_SCREEN = `#version 300 es
-in vec2 corner;
-void main() { gl_Position = vec4(corner, 0.0, 1.0); }`;
-
 // A path tracer that knows red, green and blue alone. Surfaces are numbers of the 24 patches.
 const TRACE = `#version 300 es
 precision highp float;
@@ -117,6 +113,7 @@ void main() {
 
 const DECODE = `#version 300 es
 precision highp float;
+${GLSL_SRGB}
 uniform sampler2D first, second, plain;
 uniform mat3 fromFirst, fromSecond, fromPlain;
 uniform float split, size;
@@ -127,37 +124,23 @@ vec3 mean(sampler2D sums) {
 }
 void main() {
   float from = gl_FragCoord.x / size - split;
-  vec3 linear = from < 0.0 ? fromPlain * mean(plain) : fromFirst * mean(first) + fromSecond * mean(second);
-  linear = clamp(linear, 0.0, 1.0);
-  vec3 encoded = mix(12.92 * linear, 1.055 * pow(linear, vec3(1.0 / 2.4)) - 0.055, vec3(greaterThan(linear, vec3(0.0031308))));
-  colour = abs(from) * size < 1.0 ? vec4(1.0) : vec4(encoded, 1.0);
+  vec3 rgb = from < 0.0 ? fromPlain * mean(plain) : fromFirst * mean(first) + fromSecond * mean(second);
+  colour = abs(from) * size < 1.0 ? vec4(1.0) : vec4(encode(rgb), 1.0);
 }`;
 
-const BRADFORD = [[0.8951, 0.2664, -0.1614], [-0.7502, 1.7135, 0.0367], [0.0389, -0.0685, 1.0296]];
-const TO_XYZ = [[0.4124, 0.3576, 0.1805], [0.2126, 0.7152, 0.0722], [0.0193, 0.1192, 0.9505]];
 const transpose = matrix => matrix[0].map((_, column) => matrix.map(row => row[column]));
 const product = (left, right) => transpose(transpose(right).map(column => multiply(left, column)));
 const scaled = (matrix, factors) => matrix.map(row => row.map((value, column) => value * factors[column]));
-
-function inverse([[a, b, c], [d, e, f], [g, h, i]]) {
-  const determinant = a * (e * i - f * h) - b * (d * i - f * g) + c * (d * h - e * g);
-  const adjugate = [
-    [e * i - f * h, c * h - b * i, b * f - c * e],
-    [f * g - d * i, a * i - c * g, c * d - a * f],
-    [d * h - e * g, b * g - a * h, a * e - b * d],
-  ];
-  return adjugate.map(row => row.map(value => value / determinant));
-}
 
 const mixed = (values, lamp, share) => values[0].map((value, i) => (1 - share) * value + share * values[lamp][i]);
 
 // From linear sRGB to linear sRGB, so that a white becomes (1, 1, 1), by the cone responses of Bradford.
 function balancing(white) {
-  const toCones = product(BRADFORD, TO_XYZ);
+  const { toCones, fromCones } = numbers;
   const target = multiply(toCones, [1, 1, 1]);
   const source = multiply(toCones, white);
   const gains = target.map((value, i) => value / Math.max(source[i], 1e-3));
-  return product(inverse(toCones), gains.map((gain, row) => toCones[row].map(value => gain * value)));
+  return product(fromCones, gains.map((gain, row) => toCones[row].map(value => gain * value)));
 }
 
 // Matrices of both passes and of RGB for the light that the sliders choose: numbers of the light, decoding, white, exposure.
@@ -177,56 +160,32 @@ function matrices() {
   ];
 }
 
-function compile(gl, fragment) {
-  const program = gl.createProgram();
-  for (const [kind, source] of [[gl.VERTEX_SHADER, FULL_SCREEN], [gl.FRAGMENT_SHADER, fragment]]) {
-    const shader = gl.createShader(kind);
-    gl.shaderSource(shader, source);
-    gl.compileShader(shader);
-    gl.attachShader(program, shader);
-  }
-  gl.bindAttribLocation(program, 0, "corner");
-  gl.linkProgram(program);
-  if (!gl.getProgramParameter(program, gl.LINK_STATUS)) throw new Error(gl.getProgramInfoLog(program));
-  return program;
-}
-
 function target(gl) {
-  const texture = gl.createTexture();
-  gl.bindTexture(gl.TEXTURE_2D, texture);
-  gl.texStorage2D(gl.TEXTURE_2D, 1, gl.RGBA32F, canvas.width, canvas.height);
-  gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MIN_FILTER, gl.NEAREST);
-  gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MAG_FILTER, gl.NEAREST);
-  const buffer = gl.createFramebuffer();
-  gl.bindFramebuffer(gl.FRAMEBUFFER, buffer);
-  gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0, gl.TEXTURE_2D, texture, 0);
+  const sums = texture(gl, 0, gl.RGBA32F, canvas.width, canvas.height, gl.FLOAT, null);
+  const frame = gl.createFramebuffer();
+  attach(gl, frame, [sums]);
   gl.clear(gl.COLOR_BUFFER_BIT);
-  return { texture, buffer };
+  return { sums, frame };
 }
 
 function start(gl) {
   const trace = compile(gl, TRACE);
-  const decode = compile(gl, DECODE);
-  gl.bindBuffer(gl.ARRAY_BUFFER, gl.createBuffer());
-  gl.bufferData(gl.ARRAY_BUFFER, new Float32Array([-1, -1, 3, -1, -1, 3]), gl.STATIC_DRAW);
-  gl.enableVertexAttribArray(0);
-  gl.vertexAttribPointer(0, 2, gl.FLOAT, false, 0, 0);
+  const shown = compile(gl, DECODE);
   gl.viewport(0, 0, canvas.width, canvas.height);
   const sums = numbers.surfaces.map(() => [target(gl), target(gl)]);
-  const place = (program, name) => gl.getUniformLocation(program, name);
   let samples = 0;
 
   function render() {
-    gl.useProgram(trace);
-    gl.uniform1ui(place(trace, "frame"), samples);
-    gl.uniform1f(place(trace, "size"), canvas.width);
+    gl.useProgram(trace.program);
+    gl.uniform1ui(trace.at("frame"), samples);
+    gl.uniform1f(trace.at("size"), canvas.width);
     gl.activeTexture(gl.TEXTURE0);
-    gl.uniform1i(place(trace, "before"), 0);
+    gl.uniform1i(trace.at("before"), 0);
     numbers.surfaces.forEach((surface, row) => {
       const [from, to] = sums[row];
-      gl.uniform3fv(place(trace, "surface"), surface.flat());
-      gl.bindTexture(gl.TEXTURE_2D, from.texture);
-      gl.bindFramebuffer(gl.FRAMEBUFFER, to.buffer);
+      gl.uniform3fv(trace.at("surface"), surface.flat());
+      gl.bindTexture(gl.TEXTURE_2D, from.sums);
+      gl.bindFramebuffer(gl.FRAMEBUFFER, to.frame);
       gl.drawArrays(gl.TRIANGLES, 0, 3);
       sums[row] = [to, from];
     });
@@ -234,17 +193,17 @@ function start(gl) {
   }
 
   function show() {
-    gl.useProgram(decode);
+    gl.useProgram(shown.program);
     gl.bindFramebuffer(gl.FRAMEBUFFER, null);
     ["first", "second", "plain"].forEach((name, row) => {
       gl.activeTexture(gl.TEXTURE0 + row);
-      gl.bindTexture(gl.TEXTURE_2D, sums[row][0].texture);
-      gl.uniform1i(place(decode, name), row);
+      gl.bindTexture(gl.TEXTURE_2D, sums[row][0].sums);
+      gl.uniform1i(shown.at(name), row);
     });
     ["fromFirst", "fromSecond", "fromPlain"].forEach((name, row) =>
-      gl.uniformMatrix3fv(place(decode, name), true, matrices()[row].flat()));
-    gl.uniform1f(place(decode, "split"), Number(byId("split").value));
-    gl.uniform1f(place(decode, "size"), canvas.width);
+      gl.uniformMatrix3fv(shown.at(name), true, matrices()[row].flat()));
+    gl.uniform1f(shown.at("split"), Number(byId("split").value));
+    gl.uniform1f(shown.at("size"), canvas.width);
     gl.drawArrays(gl.TRIANGLES, 0, 3);
     byId("samples").textContent = `samples per pixel: ${samples}`;
   }
@@ -252,24 +211,21 @@ function start(gl) {
   function frame() {
     render();
     show();
-    document.querySelector("main").setAttribute("aria-busy", "false");
+    ready();
     if (samples < MAX_SAMPLES) requestAnimationFrame(frame);
   }
   for (const id of ["lamp", "mix", "split", "exposure", "balance"]) byId(id).addEventListener("input", show);
   const view = document.querySelector(".view");
-  const drag = event => {
-    if (!event.buttons) return;
+  onDrag(view, event => {
     const box = view.getBoundingClientRect();
     byId("split").value = (event.clientX - box.left) / box.width;
     show();
-  };
-  view.addEventListener("pointerdown", drag);
-  view.addEventListener("pointermove", drag);
+  });
   frame();
 }
 
-const gl = canvas.getContext("webgl2", { preserveDrawingBuffer: true });
-if (gl && gl.getExtension("EXT_color_buffer_float")) start(gl);
+const gl = webgl(canvas);
+if (gl) start(gl);
 else {
   canvas.hidden = true;
   byId("wait").textContent = "This page needs WebGL 2 with float textures, which this browser does not offer.";

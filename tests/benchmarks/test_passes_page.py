@@ -9,6 +9,7 @@ import time
 import numpy as np
 import pytest
 
+from benchmarks.passes_page import page
 from tests.browsing import check_page, shared_tab
 from tests.conftest import MACBETH
 from tests.helpers import raises
@@ -17,8 +18,8 @@ from uplift.atlas.sources import read_atlas
 from uplift.colorimetry import observer
 from uplift.colorimetry.delta_e import delta_e_2000, lab
 from uplift.common.errors import OptionError
-from uplift.extras.scene.passes.browser_page import page
 from uplift.extras.scene.passes.choice import fit_bands
+from uplift.extras.scene.passes.materials import library_materials
 from uplift.extras.scene.passes.presets import PRESETS
 
 SIZE = 64
@@ -29,6 +30,12 @@ LIGHTS = ("D65", "FL2", "HP1")
 def checker():
     """Reflectances (24, 81) of the ColorChecker."""
     return on_grid(read_atlas(MACBETH), observer.grid())
+
+
+@pytest.fixture(scope="module")
+def library():
+    """Materials of the shipped sets."""
+    return library_materials()
 
 
 @pytest.fixture(scope="module")

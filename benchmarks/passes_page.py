@@ -6,13 +6,16 @@ three times with other numbers. All lamps of the room have one spectrum, so that
 numbers may multiply the picture last, and a change of the light needs no rendering.
 """
 
+from pathlib import Path
+
+import colour
 import numpy as np
 
 from uplift.colorimetry import observer
 from uplift.common.arrays import Array
 from uplift.common.errors import OptionError
 from uplift.extras.colour.light_sets import DESCRIPTIONS
-from uplift.extras.pages.html import render, resource
+from uplift.extras.pages.html import environment, resource
 from uplift.extras.scene.passes.passes import Passes
 
 PATCHES = 24
@@ -20,34 +23,12 @@ PATCHES = 24
 PASSES = 2
 SIZE = 400
 """Rows and columns of the picture."""
-SCRIPTS = (
-    "extras/pages/page.js",
-    "extras/pages/draw.js",
-    "extras/scene/passes/browser_page.js",
-)
+PARTS = Path(__file__).parent / "pages"
 
 
 def page(passes: Passes, reflectances: Array, size: int = SIZE) -> str:
-    """Render the page.
-
-    Parameters
-    ----------
-    passes : Passes
-        Two passes. The first of their lights is mixed with one of the others.
-    reflectances : ndarray, shape (24, 81)
-        Measured reflectances of a ColorChecker at 380, 385, …, 780 nm.
-    size : int
-        Rows and columns of the picture.
-
-    Returns
-    -------
-    str
-        A page that needs no other file.
-
-    Raises
-    ------
-    OptionError
-        The passes are not two with at least two lights, or the materials are not 24.
+    """Render the page of two passes, whose first light is mixed with one of the others,
+    and of a ColorChecker's reflectances (24, 81) at 380, 385, …, 780 nm.
     """
     if passes.count != PASSES or len(passes.lights) < 2:
         raise OptionError(
@@ -60,16 +41,22 @@ def page(passes: Passes, reflectances: Array, size: int = SIZE) -> str:
             f"{len(reflectances)}"
         )
     names = [light.name for light in passes.lights]
-    return render(
-        "extras/scene/passes/templates/browser_page.html.j2",
+    template = environment().from_string((PARTS / "room.html.j2").read_text("utf-8"))
+    return template.render(
         title="Spectral pictures from an RGB renderer",
         lead="A room drawn by WebGL, left as RGB, right in two passes of three bands "
         "of wavelengths, decoded. Choose a lamp, and move the sliders.",
         size=size,
         first=_described(names[0]),
-        lamps=[(name, _described(name)) for name in names[1:]],
+        lamps=[(str(row), _described(name)) for row, name in enumerate(names[1:], 1)],
+        lamp=str(names.index("HP1") if "HP1" in names else 1),
         numbers=_numbers(passes, reflectances),
-        script=resource(*SCRIPTS),
+        style=resource(str(PARTS / "room.css")),
+        script=resource(
+            "extras/pages/draw.js",
+            "extras/pages/webgl.js",
+            str(PARTS / "room.js"),
+        ),
     )
 
 
@@ -86,9 +73,13 @@ def _numbers(passes: Passes, reflectances: Array) -> dict[str, object]:
     white = passes.bands.weights.sum(axis=1)
     whites = [light.to_xyz @ (light.numbers * white) for light in passes.lights]
     decoding = screen.xyz_to_rgb @ passes.to_xyz
+    bradford = colour.CHROMATIC_ADAPTATION_TRANSFORMS["Bradford"]
+    to_cones = bradford @ screen.rgb_to_xyz
     return {
         "surfaces": [bands[:, :3].tolist(), bands[:, 3:].tolist(), rgb.tolist()],
         "lights": [light.numbers.tolist() for light in passes.lights],
         "lightRgb": (np.stack(whites) @ screen.xyz_to_rgb.T).tolist(),
+        "toCones": to_cones.tolist(),
+        "fromCones": np.linalg.inv(to_cones).tolist(),
         "decoding": [decoding[:, :3].tolist(), decoding[:, 3:].tolist()],
     }
