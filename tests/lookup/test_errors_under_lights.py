@@ -44,7 +44,21 @@ def halves(request, sensor):
             split = np.array_split(np.random.default_rng(seed).permutation(rows), 2)
             for kept, other in (split, split[::-1]):
                 half = Atlas(tuple(atlas.entries[row] for row in kept))
-                stated = (cube.standard_error(rgb, light), cube.error_bound(rgb, light))
+                parts.append(
+                    (
+                        uplift.build(half, dim=16, leave_out=[request.param]),
+                        measured[other],
+                    )
+                )
+    return parts
+
+
+def calibration(halves, sensor, light):
+    parts = []
+    for cube, measured in halves:
+        rgb = np.clip(sensor.rgb(measured), 0, 1)
+        actual = delta_e_spectra(light, cube.reflectance(rgb), measured)
+        stated = (cube.standard_error(rgb, light), cube.error_bound(rgb, light))
         parts.append((actual, np.transpose(stated)))
     return check_calibration(*map(np.concatenate, zip(*parts, strict=True)))
 
