@@ -23,7 +23,7 @@ from uplift.common.errors import UpliftWarning
 from uplift.common.files import write_text
 from uplift.common.progress import Progress
 from uplift.extras.report.comparison import mean_p95_max
-from uplift.lab.timing import commit, environment, stopwatch
+from uplift.extras.timing import commit, environment, stopwatch
 
 ROOT = Path(__file__).parents[1]
 DOCS = ROOT / "docs"

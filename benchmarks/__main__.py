@@ -15,7 +15,7 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 from benchmarks import ROOT, read_answers
-from uplift.lab.timing import ONE_THREAD, commit_time
+from uplift.extras.timing import ONE_THREAD, commit_time
 
 STALE = "stale"
 """In place of the names of questions: those whose answers are not of this commit."""

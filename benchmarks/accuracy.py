@@ -14,9 +14,9 @@ from uplift.colorimetry import observer
 from uplift.colorimetry.delta_e import delta_e_rgb, delta_e_spectra
 from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Array
+from uplift.extras.timing import time_call
 from uplift.lab.method import at_1_nm, published_srgb
 from uplift.lab.study.sensitivity import node_spectra
-from uplift.lab.timing import time_call
 from uplift.lookup.cube import Cube
 from uplift.lookup.interpolate import MODES
 

@@ -20,7 +20,7 @@ from uplift.extras.pages.figure import write_figure
 from uplift.extras.pages.marks import line
 from uplift.extras.pages.panels import Axis, Panel, draw
 from uplift.extras.photographs.photograph import photograph
-from uplift.lab.timing import time_call
+from uplift.extras.timing import time_call
 from uplift.lookup import bulk
 from uplift.lookup.cube import Cube
 from uplift.lookup.interpolate import is_inexact

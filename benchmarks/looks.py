@@ -15,10 +15,9 @@ from benchmarks.browser import SETTLE, SHIFT, browser
 from benchmarks.materials import LARGE, SPLITS, other_halves
 from uplift.colorimetry.delta_e import delta_e_rgb, lab
 from uplift.colorimetry.gamut import SRGB
-from uplift.colorimetry.likely_errors import mahalanobis
 from uplift.colorimetry.observer import display_sensors, light
 from uplift.extras.colour.srgb import to_display_codes
-from uplift.extras.looks.lab_errors import lab_errors
+from uplift.extras.looks.lab_errors import lab_errors, mahalanobis
 from uplift.extras.looks.metamer_bounds import bounds
 from uplift.extras.pages.figure import write_figure
 from uplift.extras.pages.marks import patches

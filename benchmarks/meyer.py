@@ -13,10 +13,9 @@ from uplift.common.arrays import Array
 from uplift.extras.pages.figure import write_figure
 from uplift.extras.pages.marks import Mark, line
 from uplift.extras.pages.panels import Axis, Panel, draw
-from uplift.extras.scene.quadrature import QuadratureRule
-from uplift.extras.scene.wavelengths import grid, make_setup
-from uplift.extras.scene.wavelengths import meyer as paper
-from uplift.extras.scene.wavelengths.sampling import RenderSetup
+from uplift.extras.papers.wavelengths import meyer as paper
+from uplift.extras.papers.wavelengths.quadrature import QuadratureRule
+from uplift.extras.papers.wavelengths.sampling import RenderSetup, grid, make_setup
 
 COLOURS = {"opponent": "#20509a", "cones": "#d1495b", "xyz": "#2e8b57"}
 """Colours of the spaces AC1C2, SML and XYZ of the paper."""

@@ -15,11 +15,15 @@ from uplift.colorimetry import observer
 from uplift.colorimetry.delta_e import delta_e_rgb
 from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Array
-from uplift.extras.palette.colours import exposure, illuminant, screen_matrix
-from uplift.extras.palette.design import design, matrix
-from uplift.extras.palette.factor import FactorModel, linear_product, standard_model
-from uplift.extras.palette.plots import plot_matrix, plot_spectra
-from uplift.extras.palette.spec import read_palette
+from uplift.extras.papers.palette.colours import exposure, illuminant, screen_matrix
+from uplift.extras.papers.palette.design import design, matrix
+from uplift.extras.papers.palette.factor import (
+    FactorModel,
+    linear_product,
+    standard_model,
+)
+from uplift.extras.papers.palette.plots import plot_matrix, plot_spectra
+from uplift.extras.papers.palette.spec import read_palette
 from uplift.samples import sample_path
 
 LIGHTS = ("D65", "D50", "A", "E", "FL2", "FL7", "FL11", "LED-B3", "HP1")

@@ -15,22 +15,23 @@ import uplift
 from benchmarks import DOCS, Row
 from benchmarks.browser import browser
 from benchmarks.checker import chart
+from benchmarks.passes_page import page
 from uplift.colorimetry import observer
 from uplift.common.arrays import Array
 from uplift.common.files import write_text
 from uplift.extras import texture
 from uplift.extras.colour.light_sets import PALETTE_LIGHTS
-from uplift.extras.palette.factor import factor_model
+from uplift.extras.images.converter import Converter
+from uplift.extras.papers.palette.factor import factor_model
+from uplift.extras.papers.wavelengths.choice import choose
+from uplift.extras.papers.wavelengths.sampling import grid, make_setup
 from uplift.extras.scene import passes as library
-from uplift.extras.scene import wavelengths
 from uplift.extras.scene.passes.bands import CHANNELS, Bands
-from uplift.extras.scene.passes.browser_page import page
 from uplift.extras.scene.passes.choice import judging_paths
 from uplift.extras.scene.passes.materials import Materials
 from uplift.extras.scene.passes.passes import Passes
-from uplift.extras.texture.uplifter import Converter
+from uplift.extras.timing import time_call
 from uplift.fit.families import shipped_library
-from uplift.lab.timing import time_call
 from uplift.samples import sample_path
 
 LIGHTS = ("D65", "A", "FL2", "FL11", "LED-B3", "HP1")
@@ -98,15 +99,15 @@ def other_bases() -> Iterator[Row]:
     """
     count = 2 * CHANNELS
     training = materials().training[:: -(-len(materials().training) // MATERIALS)]
-    fine = wavelengths.grid()
+    fine = grid()
     table = observer.grid()
     resampled = [np.interp(fine, table, row) for row in np.clip(training, 0, 1)]
-    setup = wavelengths.make_setup(np.stack(resampled), LIGHTS)
+    setup = make_setup(np.stack(resampled), LIGHTS)
     smooth = np.stack([library.scaled_power(name) for name in PALETTE_LIGHTS])
     model = factor_model(observer.sensor(), training, smooth, count)
     bases = {"factor model": Basis(model.projection)}
     for method in ("optimised", "meyer", "uniform"):
-        found = wavelengths.choose(setup, count=count, method=method)
+        found = choose(setup, count=count, method=method)
         bases[method] = Bands(tuple(found.sampling.wavelengths), 0.0)
     for name, basis in bases.items():
         fitted = library.fit_bands(basis, materials(), LIGHTS)

@@ -18,8 +18,8 @@ from benchmarks import ROOT, Row
 from benchmarks.programs import output
 from uplift.colorimetry import observer
 from uplift.common.arrays import Array
+from uplift.extras.timing import time_call, timing_stats
 from uplift.lab.study.sensitivity import node_spectra
-from uplift.lab.timing import time_call, timing_stats
 from uplift.lattice.lattice import Lattice, axis_nodes
 from uplift.models.model import evaluate
 from uplift.models.moments import Moments

@@ -13,7 +13,7 @@ from benchmarks import MACBETH, UPLIFT, Row
 from benchmarks.materials import MIXTURE, SENSOR, materials
 from uplift.atlas.atlas import Atlas, Entry
 from uplift.common.arrays import Array
-from uplift.lab.timing import time_call, time_command
+from uplift.extras.timing import time_call, time_command
 
 RUNS = 3
 """Runs of processes and builds, which take long and vary little."""

@@ -14,7 +14,7 @@ import uplift
 from benchmarks import MACBETH, UPLIFT, Row
 from benchmarks.pictures import pictures
 from uplift.extras.texture.scene_colours import Images
-from uplift.lab.timing import run_command, time_call
+from uplift.extras.timing import run_command, time_call
 from uplift.lookup.cube import Cube
 from uplift.samples import copy_samples
 

@@ -11,12 +11,19 @@ from benchmarks import DOCS, Row, with_printed
 from benchmarks.materials import read_atlases
 from uplift.colorimetry import observer
 from uplift.common.arrays import Array
-from uplift.extras.scene.representations import all_representations, samples
-from uplift.extras.scene.representations.composite import ENHANCED_THRESHOLD, composite
-from uplift.extras.scene.representations.samples import Representation, linear
-from uplift.lab.comparison.compare import Comparison, Scene, compare, make_scene
-from uplift.lab.comparison.pictures import write_boxes, write_costs
-from uplift.lab.comparison.tuning import tune_filters
+from uplift.extras.papers.representations import samples
+from uplift.extras.papers.representations.compare import (
+    Comparison,
+    Scene,
+    compare,
+    make_scene,
+)
+from uplift.extras.papers.representations.composite import ENHANCED_THRESHOLD, composite
+from uplift.extras.papers.representations.pictures import write_boxes, write_costs
+from uplift.extras.papers.representations.registry import all_representations
+from uplift.extras.papers.representations.samples import Representation, linear
+from uplift.extras.papers.representations.tuning import tune_filters
+from uplift.extras.scene.passes.representation import pass_representations
 
 OTHER_LIGHTS = ("LED-B3", "LED-RGB1", "HP1")
 RIEMANN_COUNTS = (8, 16, 32)
@@ -55,7 +62,8 @@ def with_tables_6(rows: Iterable[Row]) -> list[Row]:
 
 def compare_all(scene: Scene) -> Comparison:
     """Compare all representations."""
-    return compare(scene, all_representations(scene.powers, scene.surfaces))
+    registered = all_representations(scene.powers, scene.surfaces)
+    return compare(scene, [*registered, *pass_representations()])
 
 
 def filters() -> list[Row]:

@@ -20,7 +20,7 @@ from uplift.extras.pages.marks import line, picture
 from uplift.extras.pages.panels import Axis, Panel, draw, spectra_panel
 from uplift.extras.photographs.photograph import photograph
 from uplift.extras.photographs.samples import prepare_samples
-from uplift.lab.timing import TimingStats, time_call
+from uplift.extras.timing import TimingStats, time_call
 from uplift.lookup.cube import Cube
 from uplift.lookup.errors_under_lights import evidence
 

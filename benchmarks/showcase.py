@@ -20,10 +20,10 @@ from uplift.colorimetry.observer import light, sensor
 from uplift.colorimetry.sensor import Light
 from uplift.common.arrays import Array
 from uplift.extras.colour.light_sets import DESCRIPTIONS, RELIGHT_LIGHTS
+from uplift.extras.images.picture import read_picture
 from uplift.extras.pages.figure import write_figure
 from uplift.extras.pages.panels import Axis, Panel, draw, sheet
 from uplift.extras.relight.relight import relight, write_relit_sheet
-from uplift.extras.texture.picture import read_picture
 from uplift.lab.methods import mitsuba3
 from uplift.samples import sample_path
 

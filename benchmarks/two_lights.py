@@ -14,12 +14,12 @@ from benchmarks.materials import FETCHED, SENSOR, SHIPPED, materials, other_halv
 from benchmarks.two_lights_picture import draw_pictures, take_photographs
 from uplift.common.arrays import Array
 from uplift.extras.images.exr import make_part, write_parts
+from uplift.extras.images.picture import read_picture
 from uplift.extras.photographs.answers import Photographs
 from uplift.extras.photographs.errors import photographed
 from uplift.extras.photographs.photograph import Noise
-from uplift.extras.texture.picture import read_picture
+from uplift.extras.timing import run_command, time_in_turn
 from uplift.lab.runner import Errors, Task, join, named_lights, spectrum_errors
-from uplift.lab.timing import run_command, time_in_turn
 from uplift.lookup.cube import Cube
 from uplift.lookup.errors_under_lights import Evidence, errors_from, evidence
 from uplift.samples import sample_path

@@ -10,8 +10,8 @@ from uplift.atlas.resampling import on_grid
 from uplift.extras.pages.figure import write_figure
 from uplift.extras.pages.marks import line
 from uplift.extras.pages.panels import Axis, Panel, draw
-from uplift.extras.scene.wavelengths import METHODS, grid, make_setup
-from uplift.extras.scene.wavelengths.sampling import evaluate
+from uplift.extras.papers.wavelengths.choice import METHODS
+from uplift.extras.papers.wavelengths.sampling import evaluate, grid, make_setup
 
 OTHERS = ("meyer", "uniform", "bins")
 """Methods that are not fitted to materials."""

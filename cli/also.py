@@ -14,14 +14,14 @@ import click
 
 from uplift.common.errors import ColourError, OptionError
 from uplift.common.text import format_value, parse_float
+from uplift.extras.images.sequences import UDIM
 
 from . import options
-from .colours import HEX, ColourSource
-from .inputs import UDIM
 from .option_types import distinct_light
 
 if TYPE_CHECKING:
     from uplift.colorimetry.illuminants import Illuminant
+    from uplift.extras.colour.colour_source import ColourSource
     from uplift.extras.photographs.colour import PhotographedColour
     from uplift.lookup.cube import Cube
 
@@ -55,6 +55,13 @@ def parse_further(text: str, what: str, is_what: Callable[[str], bool]) -> Furth
 def is_file(text: str) -> bool:
     """Whether a text is the name of a file, or a pattern of names."""
     return os.path.lexists(text) or glob.has_magic(text) or UDIM in text
+
+
+def is_colour(text: str) -> bool:
+    """Whether a text is a colour."""
+    from uplift.extras.colour.colour_source import is_colour
+
+    return is_colour(text)
 
 
 def parse_noise(text: str) -> tuple[float, float]:
@@ -134,6 +141,7 @@ def photographed_colour(
     """
     import numpy as np
 
+    from uplift.extras.colour.colour_source import HEX
     from uplift.extras.photographs.answers import prepare
     from uplift.extras.photographs.colour import PhotographedColour
     from uplift.extras.photographs.photograph import photograph, rounding_noise

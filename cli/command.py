@@ -3,12 +3,17 @@
 import inspect
 import re
 import sys
-from collections.abc import Collection
+from collections.abc import Collection, Mapping
+from importlib import import_module
 from typing import Any
 
 import click
 
+from .startup import hide_drawing_notes
+
 NEGATIVE_NUMBER = re.compile(r"-\.?\d")
+QUICK = ("build", "query", "help")
+"""Commands that start without what drawing needs."""
 HELP_ALL = "uplift.help-all"
 """Key of the context's ``meta`` while the whole help is printed."""
 
@@ -82,6 +87,10 @@ class Command(click.Command):
 class Group(click.Group):
     """Commands under one name, which alone prints the help."""
 
+    def list_commands(self, ctx: click.Context) -> list[str]:
+        """Return the names in the order of the code."""
+        return list(self.commands)
+
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
         """Parse ``--help`` in place of no arguments."""
         return super().parse_args(ctx, args or ["--help"])
@@ -100,3 +109,30 @@ class Group(click.Group):
         ]
         with formatter.section("Commands"):
             formatter.write_dl(records)
+
+
+class LazyGroup(Group):
+    """Commands by name and summary, each imported when it is needed."""
+
+    def __init__(
+        self, name: str, summaries: Mapping[str, str], **settings: Any
+    ) -> None:
+        super().__init__(name, [click.Command(each) for each in summaries], **settings)
+        self.summaries = summaries
+
+    def get_command(self, ctx: click.Context, name: str) -> click.Command | None:
+        """Import a command; None for an unknown name."""
+        if name not in self.commands:
+            return None
+        if name not in QUICK:
+            hide_drawing_notes()
+        module = import_module(f"uplift_cli.commands.{name}")
+        command: click.Command = module.command
+        return command
+
+    def format_commands(
+        self, ctx: click.Context, formatter: click.HelpFormatter
+    ) -> None:
+        """Write names and summaries."""
+        with formatter.section("Commands"):
+            formatter.write_dl(list(self.summaries.items()))

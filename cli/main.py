@@ -1,10 +1,8 @@
 """``uplift``: find and run a command; print errors and warnings in a line each."""
 
 import contextlib
-import importlib
 import sys
 import warnings
-from itertools import chain
 from typing import Any
 
 import click
@@ -13,9 +11,9 @@ from uplift.common.errors import UpliftWarning
 from uplift.common.extensions import installed
 from uplift.common.version import version
 
-from .command import Group
+from .command import LazyGroup
 from .options import OUTPUT_FORMAT
-from .output.console import emit, flush_stdout
+from .output.console import emit, flush_stdout, say
 from .output.diagnostics import (
     BAD_INPUT,
     FAILED_CHECK,
@@ -24,63 +22,55 @@ from .output.diagnostics import (
     show_usage_error,
     show_warning,
 )
-from .startup import hide_drawing_notes
+from .replaced import current_words
 
-GROUPS = {
-    "Every day": {
-        "relight": "Show images under other lights, as RGB and as spectra.",
-        "build": "Build a cube from measured spectra.",
-        "query": "Query the spectrum of a colour.",
-        "texture": "Convert images to spectral textures (OpenEXR).",
-        "export": "Write a cube in a format that other tools read.",
-        "report": "Assess a cube: failures, errors, and every atlas entry.",
-    },
-    "Cubes": {
-        "info": "Show the contents and provenance of a cube.",
-        "slices": "Write the blue slices of a cube as images.",
-        "check": "Rebuild stored cubes and compare the results.",
-        "diff": "Compare the answers of two cubes.",
-    },
-    "Materials": {
-        "atlas": "List the entries of atlas files.",
-        "bounds": "Compute the bounds of all reflectances of a colour.",
-        "advise": "Name the colours of images to measure next.",
-        "mix": "Mix colours as spectra: paints, dyes, filters, lights.",
-        "paints": "Fit your own paints to measured samples, and find recipes.",
-        "palette": "Design the unknown spectra of a palette.",
-    },
-    "Scenes and lights": {
-        "plan": "Choose the cheapest spectra that a scene's tolerance allows.",
-        "wavelengths": "Choose the wavelengths at which a renderer samples.",
-        "passes": "Render spectra with an RGB renderer, in two or three passes.",
-        "compare": "Compare representations of spectra by error and cost.",
-        "lights": "Give lights of any brightness spectral powers.",
-    },
-    "Laboratory": {
-        "chart": "Measure the speed and accuracy of upsampling methods.",
-        "study": "Measure models, solver, and the propagation of errors.",
-        "samples": "Copy the files of the examples to a folder.",
-    },
+COMMANDS = {
+    "build": "Build a cube from measured spectra.",
+    "query": "Query the spectrum of a colour.",
+    "check": "Rebuild stored cubes and compare the results.",
+    "slices": "Write the blue slices of a cube as images.",
+    "chart": "Measure the speed and accuracy of upsampling methods.",
+    "relight": "Show images under other lights, as RGB and as spectra.",
+    "texture": "Convert images to spectral textures (OpenEXR).",
+    "export": "Write a cube in a format that other tools read.",
+    "atlas": "List the entries of atlas files.",
+    "paints": "Mix, measure and match paints, dyes, filters and lights.",
+    "passes": "Render spectra with an RGB renderer, in two or three passes.",
+    "lights": "Give lights of any brightness spectral powers.",
+    "plan": "Choose the cheapest spectra that a scene's tolerance allows.",
+    "advise": "Name the colours of images to measure next.",
+    "report": "Assess a cube: failures, errors, and every atlas entry.",
+    "info": "Show the contents and provenance of a cube.",
+    "samples": "Copy the files of the examples to a folder.",
+    "lab": "Study models, and compare, bound and design spectra.",
+    "help": "Explain a command or a topic, and list the topics.",
 }
-"""Summaries of the commands by headings of the help."""
-COMMANDS = tuple(chain.from_iterable(GROUPS.values()))
+"""Summaries of the commands, the most frequent ones first."""
 KIND = "commands"
 """Kind of the extensions that are commands of click."""
-QUICK = ("build", "query", "help")
-"""Commands that start without what drawing needs."""
 
 
-class LazyGroup(Group):
-    """Commands in groups, each imported when it is needed."""
+class Main(LazyGroup):
+    """All commands, those of other packages included."""
 
     def get_command(self, ctx: click.Context, name: str) -> click.Command | None:
         """Import a command, of this package or another; None for an unknown name."""
-        if name not in self.commands:
-            load = installed(KIND).get(name)
-            return None if load is None else load()
-        if name not in QUICK:
-            hide_drawing_notes()
-        return importlib.import_module(f"uplift_cli.commands.{name}").command
+        load = None if name in self.commands else installed(KIND).get(name)
+        return super().get_command(ctx, name) if load is None else load()
+
+    def resolve_command(
+        self, ctx: click.Context, args: list[str]
+    ) -> tuple[str | None, click.Command | None, list[str]]:
+        """Find a command, also by its old name, with a note unless there is ``-q``."""
+        words = current_words(args)
+        if words != args:
+            count = len(words) - len(args) + 1
+            loud = [word for word in words if word not in ("-q", "--quiet")]
+            if loud == words and not ctx.resilient_parsing:
+                new = " ".join(words[:count])
+                say(f"note: 'uplift {args[0]}' is 'uplift {new}'", err=True)
+            words = loud
+        return super().resolve_command(ctx, words)
 
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
         """Refuse empty values, which an empty variable of a shell leaves: as the name
@@ -91,20 +81,20 @@ class LazyGroup(Group):
             raise click.UsageError("Values must not be empty.")
         return super().parse_args(ctx, args)
 
-    def format_commands(
+    def format_options(
         self, ctx: click.Context, formatter: click.HelpFormatter
     ) -> None:
-        """Write a section of the help for each group."""
-        outside = {
-            name: load().get_short_help_str() for name, load in installed(KIND).items()
-        }
-        groups = GROUPS | ({"Other packages": outside} if outside else {})
-        width = max(map(len, chain(COMMANDS, outside)))
-        for title, names in groups.items():
-            with formatter.section(title):
-                formatter.write_dl(
-                    [(f"{name:<{width}}", summary) for name, summary in names.items()]
-                )
+        """Write the commands; the options are in the usage."""
+        formatter.write_paragraph()
+        with formatter.indentation():
+            formatter.write_dl(list(self.summaries.items()))
+        outside = [
+            (name, load().get_short_help_str())
+            for name, load in installed(KIND).items()
+        ]
+        if outside:
+            with formatter.section("Other packages"):
+                formatter.write_dl(outside)
 
     def main(self, *args: Any, **options: Any) -> Any:
         """Run the command line and exit with a code of `uplift help exit-codes`."""
@@ -165,21 +155,11 @@ def _show_version(ctx: click.Context, _: click.Parameter, is_requested: bool) ->
 
 
 @click.command(
-    cls=LazyGroup,
-    commands=[click.Command(name) for name in (*COMMANDS, "help")],
+    cls=Main,
+    summaries=COMMANDS,
     context_settings={"help_option_names": ["-h", "--help"], "show_default": True},
-    help="""Convert RGB colours to reflectance spectra that agree with measured ones.
-
-    \b
-    Examples:
-      uplift relight
-      uplift build --atlas macbeth --dim 32
-      uplift query --cube macbeth-32.uplift '#cc3319'
-      uplift query 0.8 0.2 0.1 --format json
-      uplift check macbeth-32.uplift
-
-    'uplift help COMMAND' describes a command, and 'uplift help' lists further topics.
-    """,
+    options_metavar="[--version] [--traceback]",
+    help="Convert RGB colours to reflectance spectra that agree with measured ones.",
 )
 @click.option(
     "--version",

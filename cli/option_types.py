@@ -1,10 +1,15 @@
-"""Types of the values of options: numbers, texts that are parsed, lights and files."""
+"""Types of the values of options, and the names that a shell completes for them:
+numbers, lights, spaces, cubes, atlases and files.
+"""
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
+from functools import partial
+from itertools import chain
 from typing import Any
 
 import click
+from click.shell_completion import CompletionItem
 
 from uplift.common.text import format_value, parse_float, parse_whole
 
@@ -18,10 +23,9 @@ from .inputs import (
 )
 
 INPUTS = "uplift.inputs"
-"""Key of the context's ``meta`` under which files of lamps are kept: those that name no
-file do no harm.
+"""Key of the context's ``meta`` under which parsed texts are kept: some name files,
+such as those of lamps, and the others do no harm.
 """
-
 LIGHTS = "uplift.lights"
 """Key under which the lights of the command are kept."""
 
@@ -64,11 +68,9 @@ class Whole(click.IntRange):
         try:
             number = parse_whole(value) if isinstance(value, str) else value
         except ValueError:
-            known = (
-                f"neither a whole number nor '{self.word}'"
-                if self.word
-                else "not a whole number"
-            )
+            known = "not a whole number"
+            if self.word:
+                known = f"neither a whole number nor '{self.word}'"
             self.fail(f"{format_value(value)} is {known}.", param, ctx)
         return super().convert(number, param, ctx)
 
@@ -77,25 +79,57 @@ class Whole(click.IntRange):
 
 
 class Parsed(click.ParamType):  # type: ignore[type-arg]
-    """A text that a function parses, which may raise `UpliftError`."""
+    """A text that a function parses, which may raise `UpliftError`. A shell completes
+    its ``names``, and ``files``.
+    """
 
     name = "text"
 
-    def __init__(self, function: Callable[[str], Any]) -> None:
+    def __init__(
+        self,
+        function: Callable[[str], Any] = str,
+        names: Callable[[], Iterable[str]] = tuple,
+        *,
+        files: bool = True,
+    ) -> None:
         self.function = function
+        self.names = names
+        self.files = files
 
-    def convert(self, value: Any, *_: Any) -> Any:
+    def convert(
+        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
+    ) -> Any:
         """Return what the function makes of the text."""
+        if ctx is not None:
+            texts = (value, value.rpartition(":")[0])
+            ctx.meta.setdefault(INPUTS, []).extend(texts)
         return self.function(value)
+
+    def shell_complete(
+        self, ctx: click.Context, param: click.Parameter, incomplete: str
+    ) -> list[CompletionItem]:
+        """Return the names that begin with a text, whatever their case."""
+        # first: bash drops the items before it
+        items = [CompletionItem(incomplete, type="file")] * self.files
+        for name in self.names():
+            if name.lower().startswith(incomplete.lower()):
+                items.append(CompletionItem(name))
+        return items
 
 
 class Checked(Parsed):
     """A text that a function of `uplift_cli.inputs` checks."""
 
-    def convert(self, value: Any, *_: Any) -> Any:
+    def convert(
+        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
+    ) -> Any:
         """Return the text."""
         self.function(value)
         return value
+
+
+class OutputFile(Checked):
+    """The name of a file or folder that a command writes."""
 
 
 def distinct_light(text: str) -> Any:
@@ -111,30 +145,41 @@ def distinct_light(text: str) -> Any:
     return lights[-1]
 
 
-class Light(Parsed):
-    """The name of an illuminant, or a file of a lamp, which is kept among the inputs of
-    the command.
-    """
+def _atlases() -> list[str]:
+    from uplift.atlas.sources import shipped_atlases
 
-    def convert(
-        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
-    ) -> Any:
-        """Return the name, or the lamp."""
-        if ctx is not None:
-            ctx.meta.setdefault(INPUTS, []).extend((value, value.rpartition(":")[0]))
-        return super().convert(value, param, ctx)
+    return [atlas.name for atlas in shipped_atlases()]
 
 
-class OutputFile(Checked):
-    """The name of a file or folder that a command writes."""
+def _cubes() -> Iterable[str]:
+    from uplift.lookup.cube import PACKAGED
+
+    return PACKAGED
 
 
+def _table_names(*kinds: str) -> Iterable[str]:
+    from uplift.colorimetry.tables import names
+
+    return chain.from_iterable(map(names, kinds))
+
+
+def _lights() -> Iterable[str]:
+    from uplift.colorimetry.illuminants import COMMON_NAMES
+
+    return chain(COMMON_NAMES, _table_names("illuminant"))
+
+
+_spaces = partial(_table_names, "RGB space")
 NUMBER = Number()
 WHOLE = Whole()
 WHOLE_OR_AUTO = Whole(word="auto")
-WAVELENGTHS = Parsed(parse_wavelengths)
-LIGHT = Light(distinct_light)
-INPUT_SPACE = Checked(find_input_space)
+WAVELENGTHS = Parsed(parse_wavelengths, files=False)
+ATLAS = Checked(str, _atlases)
+CUBE = Checked(str, _cubes)
+LIGHT = Parsed(distinct_light, _lights)
+OBSERVER = Checked(str, partial(_table_names, "observer", "camera"))
+SPACE = Checked(str, _spaces, files=False)
+INPUT_SPACE = Checked(find_input_space, _spaces, files=False)
 OUTPUT = OutputFile(str)
 PAGE = OutputFile(check_page)
 PLOT = OutputFile(check_plot)

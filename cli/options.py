@@ -13,16 +13,15 @@ from click.core import ParameterSource
 
 from .command import Command as Command
 from .command import Group as Group
-from .completion import complete_atlas as complete_atlas
-from .completion import complete_cube as complete_cube
-from .completion import complete_light as complete_light
-from .completion import complete_space as complete_space
+from .option_types import ATLAS as ATLAS
+from .option_types import CUBE as CUBE
 from .option_types import FIGURE_PAGE as FIGURE_PAGE
 from .option_types import INPUT_SPACE as INPUT_SPACE
 from .option_types import LIGHT as LIGHT
 from .option_types import NUMBER as NUMBER
 from .option_types import OUTPUT, PLOT, WAVELENGTHS
 from .option_types import PAGE as PAGE
+from .option_types import SPACE as SPACE
 from .option_types import WHOLE as WHOLE
 from .option_types import WHOLE_OR_AUTO as WHOLE_OR_AUTO
 from .option_types import Checked as Checked
@@ -30,6 +29,9 @@ from .option_types import OutputFile as OutputFile
 from .option_types import Parsed as Parsed
 from .option_types import Whole as Whole
 
+complete_cube = CUBE.shell_complete
+complete_light = LIGHT.shell_complete
+complete_space = SPACE.shell_complete
 Decorator = Callable[[Callable[..., Any]], Callable[..., Any]]
 OUTPUT_FORMAT = "uplift.output-format"
 """Key of the context's ``meta`` under which ``--format`` is kept."""
@@ -82,13 +84,9 @@ def repeatable(
     return click.option(option, name, multiple=True, help=text, **settings)
 
 
-atlas = partial(
-    repeatable, "--atlas", "files", metavar="FILE", shell_complete=complete_atlas
-)
+atlas = partial(repeatable, "--atlas", "files", metavar="FILE", type=ATLAS)
 LAMPS = ", such as led, 3200K or FL11, or the file of a measured lamp"
-named_lights = partial(
-    repeatable, metavar="NAME|FILE", type=LIGHT, shell_complete=complete_light
-)
+named_lights = partial(repeatable, metavar="NAME|FILE", type=LIGHT)
 light = partial(named_lights, "--light", "lights", examples=LAMPS)
 """Why its defaults differ is in `uplift help illuminants`."""
 tolerance = partial(number, "--tolerance", metavar="ΔE00")
@@ -107,8 +105,8 @@ def cube(
         "--cube",
         name,
         metavar="FILE",
+        type=CUBE,
         help=f"Cube file{help}",
-        shell_complete=complete_cube,
         **settings,
     )
 
@@ -146,7 +144,6 @@ def input_space(
         name,
         metavar="NAME",
         type=INPUT_SPACE,
-        shell_complete=complete_space,
         help=f"RGB space of {subject}: a name of OpenColorIO or colour-science such as "
         "ACEScg or lin_rec2020, or x,y "
         f"of red, green, blue and white. [default: {default}]",
@@ -244,7 +241,7 @@ def wavelengths(help: str) -> Decorator:
     return click.option("--wavelengths", metavar="NM", type=WAVELENGTHS, help=text)
 
 
-cube_argument = click.argument("cube", metavar="CUBE", shell_complete=complete_cube)
+cube_argument = click.argument("cube", metavar="CUBE", type=CUBE)
 # names of uplift.atlas.measurements.MEASURED, which is not imported here
 scale = choice(
     "--scale",

@@ -9,19 +9,19 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from uplift.common.errors import UpliftWarning
+from uplift.common.errors import ColourError, UpliftWarning
 from uplift.common.text import pluralise
 
 from . import options
-from .colours import find_colours
-from .inputs import check_range
+from .inputs import check_range, find_input_space
 from .output.diagnostics import warn
 
 if TYPE_CHECKING:
     from uplift.colorimetry.illuminants import Illuminant
-    from uplift.colorimetry.sensor import Light
+    from uplift.colorimetry.sensor import Light, Sensor
     from uplift.common.arrays import Array
-    from uplift.extras.colour.query import QueryBlock, QueryResult
+    from uplift.extras.colour.colour_source import ColourSource
+    from uplift.extras.colour.query import QueryBlock
     from uplift.extras.photographs.colour import PhotographedColour
 
 PACKAGED = "packaged"
@@ -55,6 +55,42 @@ def colour_sources(xyz: str, space: str) -> options.Decorator:
         ),
         options.input_space("the colours", default=space),
     )
+
+
+def find_colours(
+    colour: tuple[str, ...],
+    input_path: str | None,
+    xyz: tuple[float, float, float] | None,
+    xy: tuple[float, float] | None,
+    luminance: float | None,
+    encoded: bool,
+    input_space: str | None,
+) -> ColourSource:
+    """Return the source that the values of `colour_sources` name. Raises click's error
+    for none or several.
+    """
+    if colour == ("-",):
+        colour = ()
+        input_path = input_path or "-"
+    if (xy is None) != (luminance is None) or (xyz is not None and xy is not None):
+        raise click.UsageError(
+            "--xy X Y and --luminance Y require each other, and --xyz is an "
+            "alternative."
+        )
+    if xy is not None and luminance is not None:
+        x, y = xy
+        if not y > 0:
+            raise ColourError(
+                f"y of a chromaticity must be positive, got {y:g}",
+                hint="give CIE x and y",
+            )
+        xyz = x * luminance / y, luminance, (1 - x - y) * luminance / y
+    if (xyz is not None) + bool(colour) + (input_path is not None) != 1:
+        raise click.UsageError("Give colours, --input FILE, '-', --xyz or --xy.")
+    from uplift.extras.colour.colour_source import ColourSource
+
+    space = None if input_space is None else find_input_space(input_space)
+    return ColourSource(colour, input_path, xyz, encoded, space)
 
 
 colour_options = options.stacked(
@@ -118,16 +154,15 @@ class Answers:
             f"{Path(file).name}: {dim}³ nodes, {', '.join(atlases) or 'no atlas'}"
         )
         self.lights: list[Light] = []
-        # matrices from XYZ under a light to linear sRGB with the same white
-        self.to_srgb: dict[str, Array] = {}
+        self.displays: Sequence[Sensor] = ()
+        """Linear sRGB with the white of each light."""
         if lights:
             from uplift.colorimetry.observer import display_sensors
             from uplift.colorimetry.observer import lights as find_lights
 
-            setting = self.cube.observer, data.sensor.range
-            self.lights = find_lights(lights, *setting)
-            for display in display_sensors(lights, setting[0], *setting[1]):
-                self.to_srgb[display.illuminant] = display.xyz_to_rgb
+            observer = self.cube.observer
+            self.lights = find_lights(lights, observer, data.sensor.range)
+            self.displays = display_sensors(lights, observer, *data.sensor.range)
 
     def __iter__(self) -> Iterator[QueryBlock]:
         """Answer blocks, and warn at the end of colours that were mapped or filled."""
@@ -180,17 +215,3 @@ class Answers:
                 "filled from the packaged cube"
             )
             warn([UpliftWarning(problem)])
-
-    def light_colours(
-        self, answers: QueryBlock | QueryResult
-    ) -> dict[str, tuple[Array, list[str]]]:
-        """Return linear sRGB (n, 3) and '#rrggbb' (n,) of n answers, or of one, by
-        light; its white is that of the screen.
-        """
-        from uplift.extras.colour.srgb import hex_codes
-
-        colours = {}
-        for light, xyz in answers.light_xyz.items():
-            rgb = (self.to_srgb[light] @ xyz.reshape(-1, 3, 1))[..., 0]
-            colours[light] = rgb, hex_codes(rgb)
-        return colours

@@ -1,48 +1,55 @@
-"""Options of version 0.2 that later versions do not have, and what replaces them."""
+"""Names of earlier versions and what replaces them: a command runs under its old name,
+and an old option is an error that names its successor.
+"""
 
-REPLACEMENTS = {
-    "atlas": {"--convert": "--output"},
-    "build": {
-        "--auto-tolerance": "--tolerance",
-        "--entry-moments": "--entry-coefficients, one more,",
-        "--leave-out": "--exclude-family",
-        "--moments": "--coefficients, one more,",
-        "--start": "--growth",
-    },
-    "chart": {
-        "--colours": "uplift.lab.chart.task.Effort in Python",
-        "--delta-e": "--tolerance",
-        "--methods": "--method",
-    },
-    "compare": {"--target": "--tolerance"},
-    "mix": {
-        "--incidence": "--surface-reflectance",
-        "--km-constants": "--scattering",
-        "--light": "--additive",
-        "--swatches": "--plot",
-    },
-    "palette": {
-        "--atlas": "--output",
-        "--matrix": "--plot",
-        "--spectra": "--plot-spectra",
-    },
-    "query": {"--primaries": "--input-space"},
-    "slices": {"--sheet": "--plot"},
-    "study held-out": {"--moments": "--coefficients, one more,"},
-    "study stability": dict.fromkeys(
-        (
-            "--atlases",
-            "--coefficients",
-            "--dims",
-            "--models",
-            "--peer-dims",
-            "--samples",
-            "--spaces",
-            "--thresholds",
-        ),
-        "uplift.lab.study.stability.DesignSpace in Python",
-    ),
-    "texture": {"--store": "--representation"},
-    "wavelengths": {"--target": "--tolerance"},
+REPLACED = {
+    "bounds": "lab bounds",
+    "compare": "lab compare",
+    "diff": "lab diff",
+    "mix": "paints mix",
+    "palette": "lab palette",
+    "study": "lab study",
+    "wavelengths": "lab wavelengths",
+    "atlas --convert": "--output",
+    "build --auto-tolerance": "--tolerance",
+    "build --entry-moments": "--entry-coefficients, one more,",
+    "build --leave-out": "--exclude-family",
+    "build --moments": "--coefficients, one more,",
+    "build --start": "--growth",
+    "chart --colours": "uplift.lab.chart.task.Effort in Python",
+    "chart --delta-e": "--tolerance",
+    "chart --methods": "--method",
+    "lab compare --target": "--tolerance",
+    "lab palette --atlas": "--output",
+    "lab palette --matrix": "--plot",
+    "lab palette --spectra": "--plot-spectra",
+    "lab study held-out --moments": "--coefficients, one more,",
+    "lab wavelengths --target": "--tolerance",
+    "paints mix --incidence": "--surface-reflectance",
+    "paints mix --km-constants": "--scattering",
+    "paints mix --light": "--additive",
+    "paints mix --swatches": "--plot",
+    "query --primaries": "--input-space",
+    "slices --sheet": "--plot",
+    "texture --store": "--representation",
 }
-"""By command, and by the name of the option."""
+"""By the words of the command line."""
+for name in (
+    "atlases",
+    "coefficients",
+    "dims",
+    "models",
+    "peer-dims",
+    "samples",
+    "spaces",
+    "thresholds",
+):
+    REPLACED[f"lab study stability --{name}"] = (
+        "uplift.lab.study.stability.DesignSpace in Python"
+    )
+
+
+def current_words(words: list[str]) -> list[str]:
+    """Return the words of a command line with the present name of its command."""
+    new = REPLACED.get(words[0], words[0]) if words else ""
+    return [*new.split(), *words[1:]]

@@ -3,7 +3,7 @@
 import click
 
 from . import options
-from .completion import complete_observer
+from .option_types import OBSERVER, SPACE
 
 
 def space(camera: str = "") -> options.Decorator:
@@ -13,7 +13,7 @@ def space(camera: str = "") -> options.Decorator:
         f"ACEScg{camera}."
     )
     return click.option(
-        "--space", default="sRGB", help=text, shell_complete=options.complete_space
+        "--space", default="sRGB", type=SPACE, metavar="TEXT", help=text
     )
 
 
@@ -26,8 +26,8 @@ def observer(camera: str = "") -> options.Decorator:
         "--observer",
         metavar=metavar,
         default=default,
+        type=OBSERVER,
         help=text,
-        shell_complete=complete_observer,
     )
 
 
@@ -40,7 +40,6 @@ sensor = options.stacked(
         default="D65",
         help="Illuminant under which RGB are defined; a cube needs a name, other "
         "commands read the file of a lamp.",
-        shell_complete=options.complete_light,
     ),
     observer(
         ", or with --space camera a camera: name or FILE of sensitivities (CSV, or "

@@ -208,6 +208,6 @@ def remove_compiled_code() -> bool:
 
 def use_one_blas_thread() -> None:
     """Limit linear algebra of numpy to one thread, for timings."""
-    from uplift.lab.timing import ONE_THREAD
+    from uplift.extras.timing import ONE_THREAD
 
     os.environ.update(ONE_THREAD)

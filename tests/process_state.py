@@ -7,7 +7,7 @@ import os
 import sys
 from collections.abc import Iterator
 
-from uplift.lab.timing import ONE_THREAD
+from uplift.extras.timing import ONE_THREAD
 
 SET_BY_COMMANDS = (*ONE_THREAD, "MPLBACKEND", "PJRT_NPROC")
 """Variables that are removed if they are new. Libraries set others while they are

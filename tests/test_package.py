@@ -79,7 +79,7 @@ def test_packages_have_files_of_these_kinds(tracked):
     atlases = {Path(name).suffix for name in tracked if name.startswith("atlases/")}
     suffixes = (
         ".c .cpp .css .csv .cxf .cuh .exr .glsl .h .hlsl .j2 .js .mjs .npz .pbrt .png "
-        ".spd .ti3 .toml .txt .typed .uplift .wasm .xlsx .xml"
+        ".pyi .spd .ti3 .toml .txt .typed .uplift .wasm .xlsx .xml"
     )
     assert library == {".py", *suffixes.split()}
     assert atlases == {".md", ".py", ".txt"}

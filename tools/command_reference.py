@@ -8,7 +8,7 @@ import textwrap
 from collections.abc import Iterator
 
 import click
-from uplift_cli.main import GROUPS, main
+from uplift_cli.main import COMMANDS, main
 
 VERBATIM = "\b\n"
 """Start of a paragraph that click does not wrap."""
@@ -20,22 +20,23 @@ def command_reference() -> str:
     """Return the section of every group, command and subcommand in Markdown, in the
     order of the help.
     """
-    parts = []
+    parts = list[str]()
     with click.Context(main, info_name="uplift", **main.context_settings) as context:
-        for title, names in GROUPS.items():
-            parts.append(f"\n## {title}\n")
-            for name in names:
-                parts += _command(main.get_command(context, name), name, context)
+        for name in COMMANDS:
+            parts += _command(main.get_command(context, name), name, context)
     return "".join(parts)
 
 
-def _command(command: click.Command, name: str, parent: click.Context) -> Iterator[str]:
+def _command(
+    command: click.Command | None, name: str, parent: click.Context
+) -> Iterator[str]:
     """Yield the usage, the help and the options of a command, followed by its
     subcommands.
     """
+    assert command is not None
     with click.Context(command, info_name=name, parent=parent) as context:
         usage = " ".join([context.command_path, *command.collect_usage_pieces(context)])
-        yield f"\n### {context.command_path}\n\n```text\n{usage}\n```\n"
+        yield f"\n## {context.command_path}\n\n```text\n{usage}\n```\n"
         for paragraph in inspect.cleandoc(
             (command.help or "").replace("\f\n", "")
         ).split("\n\n"):
@@ -46,8 +47,10 @@ def _command(command: click.Command, name: str, parent: click.Context) -> Iterat
             option, text = each.get_help_record(context) or ("", "")
             if text:
                 yield f"| `{option.replace('|', PIPE)}` | {_escape(text)} |\n"
-        for each in getattr(command, "commands", {}).values():
-            yield from _command(each, each.name, context)
+        if isinstance(command, click.Group):
+            for below in command.list_commands(context):
+                inner = command.get_command(context, below)
+                yield from _command(inner, below, context)
 
 
 def _code_block(paragraph: str) -> str:

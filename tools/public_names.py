@@ -15,12 +15,13 @@ from pathlib import Path
 from typing import Any
 
 import click
-from uplift_cli.commands.help import EXIT_CODE_MEANINGS
+from uplift_cli.commands.help import EXIT_CODE_MEANINGS, find_context
 from uplift_cli.main import main
+from uplift_cli.replaced import REPLACED
 
 from uplift.cube.file import KIND
 from uplift.extras.emission.file import KIND as LIGHTS
-from uplift.extras.export.program import read_source
+from uplift.extras.export.source import read_source
 
 ROOT = Path(__file__).parents[1]
 STORED = ROOT / "tests" / "reference" / "public_names.txt"
@@ -39,6 +40,7 @@ def public_names() -> list[str]:
             _header_names(),
             python_names(),
             command_names(main, context),
+            _old_command_names(context),
         )
         return sorted(set(chain.from_iterable(parts)))
 
@@ -74,6 +76,15 @@ def command_names(command: click.Command, context: click.Context) -> Iterator[st
             assert inner is not None
             with click.Context(inner, info_name=name, parent=context) as below:
                 yield from command_names(inner, below)
+
+
+def _old_command_names(context: click.Context) -> Iterator[str]:
+    """Yield the words of commands under the old names that still run."""
+    for old, new in REPLACED.items():
+        if " " not in old:
+            command = find_context(new.split()).command
+            with click.Context(command, info_name=old, parent=context) as below:
+                yield from command_names(command, below)
 
 
 def python_names() -> Iterator[str]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import asdict
-from operator import attrgetter
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -13,29 +13,19 @@ from uplift.common.text import pluralise
 
 from .. import options, sensor_options
 from ..output.answers import as_lists
-from ..output.console import (
-    has_colours,
-    make_table,
-    paragraph,
-    print_csv,
-    print_fields,
-    print_json,
-    say,
-    show,
-    swatch,
-)
+from ..output.console import paragraph, print_fields, say
+from ..output.table import Table, print_result, swatch
 from ..outputs import check_outputs
 
 if TYPE_CHECKING:
+    from rich.text import Text
+
     from uplift.atlas.atlas import Atlas
     from uplift.colorimetry.illuminants import Illuminant
     from uplift.colorimetry.sensor import Sensor
-    from uplift.common.arrays import Array
 
 SHIPPED = ("name", "entries", "content", "source", "licence")
 """Columns of the list of shipped atlases."""
-COLUMNS = ("name", "start", "end", "step", *"rgb", "in_gamut", "warnings")
-"""Columns of entries in CSV."""
 SOURCE = ("name", "digest", "format", "measured", "missing", "notes")
 """Fields of the source of an atlas in JSON."""
 
@@ -64,9 +54,7 @@ SOURCE = ("name", "digest", "format", "measured", "missing", "notes")
       uplift atlas paints.csv -o paints.txt
     """,
 )
-@click.argument(
-    "files", metavar="[FILE]...", nargs=-1, shell_complete=options.complete_atlas
-)
+@click.argument("files", metavar="[FILE]...", nargs=-1, type=options.ATLAS)
 @options.scale
 @options.missing
 @sensor_options.sensor
@@ -100,20 +88,22 @@ def command(
             paragraph(f"{clip.name}: {clip} in a build", err=True)
         say(f"{output}: {pluralise(len(atlas), 'entry')}", err=True)
         return
-    rows, codes, smallest = _list_entries(atlas, target, camera["illuminant"])
-    if style == "json":
-        fields = {
-            **_pick(target, camera),
-            "sources": [_pick(source, SOURCE) for source in atlas.sources],
-            "smallest_space": smallest,
-            "entries": rows,
-            "skipped": list(map(asdict, atlas.skipped)),
-        }
-        print_json(fields)
-    elif style == "csv":
-        print_csv(COLUMNS, map(_csv_row, rows))
-    else:
-        _print_table(atlas, target, rows, codes, smallest)
+    rows, smallest = _list_entries(atlas, target, camera["illuminant"])
+    fields = {
+        **_pick(target, camera),
+        "sources": [_pick(source, SOURCE) for source in atlas.sources],
+        "smallest_space": smallest,
+        "entries": rows,
+        "skipped": list(map(asdict, atlas.skipped)),
+    }
+    headings = {"name": "name", "start": "nm", "end": "to", "step": "step"}
+    headings["rgb"] = f"linear {target.space} under {target.illuminant}"
+    show = partial(_show_rgb, target)
+    print_result(
+        style, fields, Table(rows, headings, digits="g", formats={"rgb": show})
+    )
+    if style == "table":
+        _print_notes(atlas, target, rows, smallest)
 
 
 def _pick(item: object, names: Iterable[str]) -> dict[str, Any]:
@@ -121,48 +111,34 @@ def _pick(item: object, names: Iterable[str]) -> dict[str, Any]:
     return {name: getattr(item, name) for name in names}
 
 
-def _csv_row(row: dict[str, Any]) -> Sequence[Any]:
-    *place, rgb, in_gamut, warnings = row.values()
-    return [*place, *rgb, str(in_gamut).lower(), "; ".join(warnings)]
-
-
 def _print_shipped(style: str) -> None:
     from uplift.atlas.sources import shipped_atlases
 
     atlases = shipped_atlases()
-    if style == "json":
-        rows = []
-        for atlas in atlases:
-            file = {"path": str(atlas.path), "digest": atlas.digest}
-            rows.append(_pick(atlas, SHIPPED) | file)
-        print_json({"atlases": rows})
-    elif style == "csv":
-        print_csv(SHIPPED, map(attrgetter(*SHIPPED), atlases))
-    else:
+    if style == "table":
         for atlas in atlases:
             print_fields(
                 {atlas.name: atlas.content, "": f"{atlas.source}. {atlas.licence}"}
             )
         say()
         paragraph("Use a name as --atlas NAME, or in place of FILE.")
+        return
+    rows = [_pick(atlas, SHIPPED) for atlas in atlases]
+    files = [{"path": str(atlas.path), "digest": atlas.digest} for atlas in atlases]
+    with_files = [row | file for row, file in zip(rows, files, strict=True)]
+    print_result(style, {"atlases": with_files}, Table(rows))
 
 
 def _list_entries(
     atlas: Atlas, sensor: Sensor, illuminant: Illuminant
-) -> tuple[list[dict[str, Any]], Array, str | None]:
-    """List all entries, with reflectances clipped as in a build; return 8-bit sRGB (n,
-    3) and `smallest_space`.
-    """
+) -> tuple[list[dict[str, Any]], str | None]:
+    """List entries, with reflectances clipped as in a build, and `smallest_space`."""
     from uplift.atlas.resampling import resample
-    from uplift.colorimetry.gamut import SRGB
-    from uplift.colorimetry.observer import sensor as make_sensor
     from uplift.colorimetry.observer import smallest_space
     from uplift.colorimetry.sensor import in_unit_cube
-    from uplift.extras.colour.srgb import to_display_codes
 
     resampled = resample(atlas, sensor.wavelengths)
-    display = make_sensor("sRGB", illuminant, sensor.observer)
-    clips = {clip.name: (str(clip),) for clip in resampled.clips}
+    clips = {clip.name: [str(clip)] for clip in resampled.clips}
     rows = [
         {
             "name": entry.name,
@@ -171,33 +147,25 @@ def _list_entries(
             "step": entry.step,
             "rgb": as_lists(rgb),
             "in_gamut": bool(in_unit_cube(rgb)),
-            "warnings": clips.get(entry.name, ()),
+            "warnings": clips.get(entry.name, []),
         }
         for entry, rgb in zip(atlas.entries, sensor.rgb(resampled.values), strict=True)
     ]
-    codes = to_display_codes(display.rgb(resampled.values), SRGB).astype(int)
-    return rows, codes, smallest_space(resampled.values, illuminant, sensor.observer)
+    return rows, smallest_space(resampled.values, illuminant, sensor.observer)
 
 
-def _print_table(
-    atlas: Atlas,
-    sensor: Sensor,
-    rows: Sequence[dict[str, Any]],
-    codes: Array,
-    smallest: str | None,
+def _show_rgb(sensor: Sensor, rgb: list[float]) -> Text:
+    import numpy as np
+
+    from uplift.extras.colour.srgb import hex_codes
+
+    (code,) = hex_codes(np.array([rgb]), sensor)
+    return swatch(code, " ".join(map("{: .4f}".format, rgb)))
+
+
+def _print_notes(
+    atlas: Atlas, sensor: Sensor, rows: list[dict[str, Any]], smallest: str | None
 ) -> None:
-    coloured = has_colours()
-    texts = [""] * coloured + ["name", "nm"]
-    table = make_table(
-        texts, "RGB", title=f"linear {sensor.space} under {sensor.illuminant}"
-    )
-    for row, code in zip(rows, codes.tolist(), strict=True):
-        wavelengths = f"{row['start']:g}:{row['end']:g}"
-        if row["step"] is not None:
-            wavelengths += f":{row['step']:g}"
-        rgb = map("{:.4f}".format, row["rgb"])
-        table.add_row(*[swatch(code)] * coloured, row["name"], wavelengths, *rgb)
-    show(table)
     for row in rows:
         for warning in row["warnings"]:
             paragraph(f"{row['name']}: {warning}")
@@ -219,5 +187,5 @@ def _print_table(
     paragraph(text)
 
 
-def _count(names: Sequence[str], label: str) -> str:
+def _count(names: list[str], label: str) -> str:
     return f"{len(names)} {label}" + (f" ({', '.join(names)})" if names else "")

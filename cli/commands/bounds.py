@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import partial
-from itertools import chain
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import click
@@ -13,17 +12,10 @@ from uplift.common.files import write_text
 
 from .. import also as further
 from .. import options
-from ..colours import is_colour
-from ..output.answers import as_lists, hex_code
-from ..output.bounds import bounds_cells, bounds_fields, bounds_table, print_colours
-from ..output.console import (
-    json_output,
-    print_csv,
-    print_json_answers,
-    say,
-    show,
-)
-from ..output.query_blocks import json_objects
+from ..output.answers import format_rgb, hex_codes, patch
+from ..output.console import print_fields, say
+from ..output.query import answer_rows
+from ..output.table import Table, print_json_rows
 from ..outputs import check_outputs
 from ..queries import Answers, colour_options
 
@@ -34,6 +26,15 @@ if TYPE_CHECKING:
     from uplift.extras.looks.metamer_bounds import Bounds
     from uplift.lookup.cube import Cube
 
+Row = Mapping[str, Any]
+Block = tuple["QueryBlock", Sequence["Bounds"]]
+"""Answers, and their bounds under each light."""
+DIVISIONS = 2
+"""Density of the directions of bounds: 162 of each of many colours."""
+SINGLE_DIVISIONS = 3
+"""That of a single colour: 642."""
+LAB = ("L*", "a*", "b*")
+
 
 class Cut(NamedTuple):
     """Bounds of a colour that is also known under further lights, by their names."""
@@ -42,22 +43,8 @@ class Cut(NamedTuple):
     others: Array
     """(L, 3) linear RGB under them."""
     by_light: Sequence[Bounds]
-    errors: list[list[float]]
+    errors: list[dict[str, Any]]
     """Standard error and error bound under each light."""
-
-
-Block = tuple["QueryBlock", Sequence["Bounds"]]
-"""Answers, and their bounds under each light."""
-DIVISIONS = 2
-"""Density of the directions of bounds: 162 of each of many colours."""
-SINGLE_DIVISIONS = 3
-"""That of a single colour: 642."""
-COLUMNS = (
-    *("r", "g", "b", "light", "L*", "a*", "b*", "standard_error", "error_bound"),
-    *("largest", "outer"),
-    *("L*_min", "a*_min", "b*_min", "L*_max", "a*_max", "b*_max", "share"),
-)
-"""Columns of CSV."""
 
 
 @click.command(
@@ -90,7 +77,9 @@ COLUMNS = (
     """,
 )
 @colour_options
-@further.also("COLOUR", is_colour, "Colour of the same thing under another light")
+@further.also(
+    "COLOUR", further.is_colour, "Colour of the same thing under another light"
+)
 @options.light("Illuminant under which the bounds are shown", "A FL11 HP1")
 @options.table_json_or_csv
 @options.plot("Plot the bounds")
@@ -112,37 +101,40 @@ def command(
 
     check_outputs(plot_path, html)
     answers = Answers(lights=lights or RELIGHT_LIGHTS, **colours)
-    if html is not None and not answers.single:
-        raise click.UsageError("--html shows one colour: give it on the command line.")
-    if also:
-        if not answers.single:
-            raise click.UsageError("--also needs one colour on the command line.")
-        if html is not None or style == "csv":
-            raise click.UsageError("--also does not apply to --html and --format csv.")
-        _print_cut(answers, also, plot_path, style, force)
-        return
+    if not answers.single and (also or html is not None):
+        option = "--also" if also else "--html"
+        raise click.UsageError(f"{option} needs one colour on the command line.")
+    if also and (html is not None or style == "csv"):
+        raise click.UsageError("--also does not apply to --html and --format csv.")
     blocks: Iterable[Block] = map(partial(_compute, answers), answers)
+    cut = None
+    if answers.single:
+        ((results, by_light),) = blocks
+        blocks = [(results, by_light)]
+        cut = _cut(answers, results, also) if also else None
     if plot_path is not None:
         from uplift.extras.pages.plots import plot_bounds
 
         blocks = list(blocks)
-        by_light = [bounds for _, bounds in blocks]
-        plot_bounds(answers.cube, by_light, plot_path, force=force)
+        regions = [bounds for _, bounds in blocks]
+        inner = cut.by_light if cut else ()
+        plot_bounds(answers.cube, regions, plot_path, cut=inner, force=force)
         say(f"{plot_path}: bounds", err=True)
     if html is not None:
         from uplift.extras.report.look_page import page
 
-        blocks = list(blocks)
-        [(_, bounds)] = blocks
-        write_text(page(answers.cube, bounds), html, force=force)
+        write_text(page(answers.cube, by_light), html, force=force)
         say(f"{html}: page to choose a look on", err=True)
+    rows = _rows(answers, blocks, cut)
     if style == "json":
-        objects = (_objects(answers, *block) for block in blocks)
-        print_json_answers(objects, single=answers.single)
+        print_json_rows(rows, single=answers.single)
     elif style == "csv":
-        print_csv(COLUMNS, chain.from_iterable(_rows(*block) for block in blocks))
+        Table(_csv_rows(rows)).print_csv()
+    elif answers.single:
+        _print_colours(answers.cube, results.rgb, cut)
+        _print_table(answers.cube, rows, ("light", "known") if cut else ("light",))
     else:
-        _print_table(answers.cube, blocks, single=answers.single)
+        _print_table(answers.cube, rows, ("hex", "light"))
 
 
 def _compute(answers: Answers, results: QueryBlock) -> Block:
@@ -155,31 +147,6 @@ def _compute(answers: Answers, results: QueryBlock) -> Block:
     ]
 
 
-def _print_cut(
-    answers: Answers,
-    also: Sequence[further.Further],
-    plot_path: str | None,
-    style: str,
-    force: bool,
-) -> None:
-    """Print and draw the bounds of a colour, with and without those under further
-    lights.
-    """
-    ((results, whole),) = [_compute(answers, block) for block in answers]
-    cut = _cut(answers, results, also)
-    if plot_path is not None:
-        from uplift.extras.pages.plots import plot_bounds
-
-        plot_bounds(answers.cube, [whole], plot_path, cut=cut.by_light, force=force)
-        say(f"{plot_path}: bounds", err=True)
-    if style == "json":
-        (text,) = _objects(answers, results, whole)
-        fields = json_output(_cut_fields(cut))
-        print_json_answers([[f"{text[:-1]}, {fields[1:]}"]], single=True)
-    else:
-        _print_cut_table(answers.cube, results, whole, cut)
-
-
 def _cut(answers: Answers, results: QueryBlock, also: Sequence[further.Further]) -> Cut:
     """Compute the bounds of a colour that is known under further lights."""
     from uplift.extras.looks.photograph_bounds import bounds_of_photographs
@@ -190,91 +157,136 @@ def _cut(answers: Answers, results: QueryBlock, also: Sequence[further.Further])
     )
     photographs = known.photographs
     others = known.others.reshape(-1, 3)
-    by_light = [
-        bounds_of_photographs(
+    by_light = []
+    errors = []
+    for light in answers.lights:
+        bounds = bounds_of_photographs(
             photographs, results.rgb, others.reshape(1, -1), light, SINGLE_DIVISIONS
         )
-        for light in answers.lights
-    ]
-    errors = []
-    for bounds in by_light:
         expected = light_errors(photographs, bounds.light)(results.rgb)[0]
-        possible = bounds.largest.delta_e_2000[0]
-        errors.append(expected.clip(max=possible).tolist())
+        standard, bound = expected.clip(max=bounds.largest.delta_e_2000[0]).tolist()
+        by_light.append(bounds)
+        errors.append({"standard_error": standard, "error_bound": bound})
     names = [photograph.light for photograph in photographs.further]
     return Cut(names, others, by_light, errors)
 
 
-def _cut_fields(cut: Cut) -> dict[str, Any]:
-    """Return the bounds of a colour that is known under further lights as JSON
-    values.
-    """
-    fields = {}
-    for bounds, (standard, bound) in zip(cut.by_light, cut.errors, strict=True):
-        errors = {"standard_error": standard, "error_bound": bound}
-        fields[bounds.light.name] = {**bounds_fields(bounds, 0), **errors}
+def _rows(
+    answers: Answers, blocks: Iterable[Block], cut: Cut | None
+) -> Iterator[dict[str, Any]]:
+    """Yield each answer with its bounds by light, as JSON values."""
+    for results, by_light in blocks:
+        for number, row in enumerate(answer_rows(answers, results)):
+            row["bounds"] = {
+                bounds.light.name: _fields(bounds, number) for bounds in by_light
+            }
+            if cut is not None:
+                row["also"] = dict(zip(cut.names, cut.others.tolist(), strict=True))
+                row["also_reflectance"] = cut.by_light[0].reflectance[0].tolist()
+                row["also_bounds"] = {
+                    bounds.light.name: _fields(bounds, 0) | errors
+                    for bounds, errors in zip(cut.by_light, cut.errors, strict=True)
+                }
+            yield row
+
+
+def _fields(bounds: Bounds, row: int) -> dict[str, Any]:
+    """Return the bounds of a colour as JSON values."""
+    from uplift.colorimetry.delta_e import lab
+    from uplift.extras.looks.lab_errors import LIKELY
+
+    largest = bounds.largest
+    likely = bounds.likely(row)
+    covariance = bounds.covariance
     return {
-        "also": dict(zip(cut.names, cut.others.tolist(), strict=True)),
-        "also_reflectance": cut.by_light[0].reflectance[0].tolist(),
-        "also_bounds": fields,
+        "lab": bounds.lab[row].tolist(),
+        "largest_delta_e_2000": float(largest.delta_e_2000[row]),
+        "largest_lab": lab(largest.xyz[row], bounds.light.white).tolist(),
+        "outer_delta_e_2000": float(largest.outer[row]),
+        "lab_range": bounds.box[row].tolist(),
+        "share": float(bounds.share[row]),
+        "outline": bounds.outline(row).tolist(),
+        "covariance": None if covariance is None else covariance[row].tolist(),
+        "likely": None if likely is None else likely.tolist(),
+        "likely_share": LIKELY,
     }
 
 
-def _print_cut_table(
-    cube: Cube, results: QueryBlock, whole: Sequence[Bounds], cut: Cut
-) -> None:
-    """Print two rows for each light: those of the colour, and of all its colours."""
-    print_colours(cube, results.rgb[0], cut.names, cut.others)
-    (result,) = results
+def _csv_rows(rows: Iterable[Row]) -> Iterator[Row]:
+    """Yield a row for each colour under each light."""
+    for row in rows:
+        for light, bounds in row["bounds"].items():
+            least, most = bounds["lab_range"]
+            yield {
+                **dict(zip("rgb", row["rgb"], strict=True)),
+                "light": light,
+                **dict(zip(LAB, bounds["lab"], strict=True)),
+                "standard_error": row["standard_errors"].get(light),
+                "error_bound": row["error_bounds"].get(light),
+                "largest": bounds["largest_delta_e_2000"],
+                "outer": bounds["outer_delta_e_2000"],
+                **{f"{name}_min": least[axis] for axis, name in enumerate(LAB)},
+                **{f"{name}_max": most[axis] for axis, name in enumerate(LAB)},
+                "share": bounds["share"],
+            }
+
+
+def _print_colours(cube: Cube, rgb: Array, cut: Cut | None) -> None:
+    """Print the linear RGB (1, 3) under the light of the cube, and under further
+    lights.
+    """
+    colours = {"linear RGB": rgb}
+    if cut is not None:
+        for name, other in zip(cut.names, cut.others, strict=True):
+            colours[f"under {name}"] = other[None]
+    fields = {}
+    for name, values in colours.items():
+        fields[name] = f"{format_rgb(values[0])}  {hex_codes(cube, values)[0]}"
+    print_fields(fields, {"linear RGB": patch(cube, rgb[0])})
+    say()
+
+
+def _print_table(cube: Cube, rows: Iterable[Row], texts: Sequence[str]) -> None:
+    """Print bounds in a row for each light, or two if the colour is also known under
+    further lights.
+    """
+    import numpy as np
+
+    from uplift.extras.looks.lab_errors import LIKELY
+
     first = cube.data.sensor.illuminant
-    every = ", ".join((first, *cut.names))
-    table = bounds_table(("light", "known"))
-    for before, after, (_, bound) in zip(whole, cut.by_light, cut.errors, strict=True):
-        light = before.light.name
-        error = result.error_bounds.get(light)
-        table.add_row(light, first, *bounds_cells(before, 0, error))
-        table.add_row("", every, *bounds_cells(after, 0, bound))
-    show(table)
+    shown: list[Row] = []
+    for row in rows:
+        (code,) = hex_codes(cube, np.array([row["rgb"]]))
+        every = ", ".join((first, *row.get("also", ())))
+        for light, bounds in row["bounds"].items():
+            bound = row["error_bounds"].get(light)
+            start = {"hex": code, "light": light, "known": first}
+            shown.append({**start, **_cells(bounds), "error_bound": bound})
+            code = ""  # once for all lights
+            if "also_bounds" in row:
+                start = {"light": "", "known": every}
+                shown.append({**start, **_cells(row["also_bounds"][light])})
+    headings = {
+        **{key: key for key in texts},
+        "lab": "L* a* b*",
+        "error_bound": f"ΔE {LIKELY:.0%}",
+        "largest_delta_e_2000": "ΔE max",
+        "a": "a* range",
+        "b": "b* range",
+        "share": "share",
+    }
+    formats: dict[str, Any] = {
+        "lab": ".1f",
+        "a": "{0[0]}..{0[1]}".format,
+        "b": "{0[0]}..{0[1]}".format,
+        "share": lambda share: f"{100 * share:.2g}%",
+    }
+    Table(shown, headings, digits=".2f", formats=formats).print_text()
 
 
-def _objects(
-    answers: Answers, results: QueryBlock, by_light: Sequence[Bounds]
-) -> Iterable[str]:
-    for row, text in enumerate(json_objects(answers, results)):
-        fields = {bounds.light.name: bounds_fields(bounds, row) for bounds in by_light}
-        yield f"{text[:-1]}, {json_output({'bounds': fields})[1:]}"
-
-
-def _rows(results: QueryBlock, by_light: Sequence[Bounds]) -> Iterable[list[Any]]:
-    """Yield the rows of CSV, of the columns `COLUMNS`."""
-    for row, result in enumerate(results):
-        for bounds in by_light:
-            light = bounds.light.name
-            yield [
-                *as_lists(result.rgb),
-                light,
-                *bounds.lab[row].tolist(),
-                result.standard_errors.get(light),
-                result.error_bounds.get(light),
-                float(bounds.largest.delta_e_2000[row]),
-                float(bounds.largest.outer[row]),
-                *bounds.box[row].ravel().tolist(),
-                float(bounds.share[row]),
-            ]
-
-
-def _print_table(cube: Cube, blocks: Iterable[Block], *, single: bool) -> None:
-    for number, (results, by_light) in enumerate(blocks):
-        if single:
-            print_colours(cube, results.rgb[0], (), results.rgb[:0])
-        headings = ("hex",) * (not single) + ("light",)
-        table = bounds_table(headings, show_header=number == 0)
-        for row, result in enumerate(results):
-            code = hex_code(cube, result.rgb)
-            for bounds in by_light:
-                light = bounds.light.name
-                error = result.error_bounds.get(light)
-                cells = bounds_cells(bounds, row, error)
-                table.add_row(*(code,) * (not single), light, *cells)
-                code = ""  # once for all lights
-        show(table)
+def _cells(bounds: Row) -> dict[str, Any]:
+    """Add the ranges of a* and b* to bounds as JSON values."""
+    (_, *least), (_, *most) = bounds["lab_range"]
+    first, second = zip(map(round, least), map(round, most), strict=True)
+    return {**bounds, "a": list(first), "b": list(second)}

@@ -11,8 +11,9 @@ import click
 
 from .. import options
 from ..inputs import DEFAULT_ATLASES, atlas_files, read_atlases
-from ..output.console import make_table, paragraph, say, show
+from ..output.console import paragraph, say
 from ..output.progress import progress_bar
+from ..output.table import Table, print_result
 from ..outputs import check_folder, write_files
 from ..startup import enable_jit_cache, use_one_blas_thread
 
@@ -153,21 +154,24 @@ def _measure(
 
 
 def _print_fronts(chart: Chart) -> None:
-    from uplift.extras.pages.format import format_size
+    from uplift.extras.pages.format import format_error, format_size, format_time
     from uplift.lab.chart.results import State, criteria
 
     say("Pareto fronts, from the fastest to the most accurate")
+    formats = {"time": format_time, "error": format_error, "bytes": format_size}
     tables = []
     for batch in chart.batches:
         for criterion in criteria(batch)[:PRINTED]:
+            rows = []
+            for result, (time, error) in criterion.front(chart.measured).items():
+                size = result.numbers["bytes"]
+                row = {"method": result.method, "time": time, "error": error}
+                rows.append(row | {"bytes": size})
             title = f"{criterion.title}: {criterion.colours}"
-            numbers = ("time", criterion.unit, "bytes")
-            table = make_table(("method",), numbers, title=title)
-            for row in criterion.front(chart.measured):
-                size = format_size(row.numbers["bytes"])
-                table.add_row(row.method, *criterion.labels(row), size)
-            tables.append(table)
-    show(*tables)
-    for row in chart.results:
-        if row.state != State.MEASURED:
-            say(f"{row.method}: {row.state}, not drawn: {row.why}")
+            headings = {key: key for key in ("method", "time", "error", "bytes")}
+            headings["error"] = criterion.unit
+            tables.append(Table(rows, headings, title, formats=formats))
+    print_result("table", None, *tables)
+    for result in chart.results:
+        if result.state != State.MEASURED:
+            say(f"{result.method}: {result.state}, not drawn: {result.why}")

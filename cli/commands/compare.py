@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from functools import partial
 from operator import itemgetter
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -14,15 +14,15 @@ from uplift.common.text import pluralise
 
 from .. import options
 from ..inputs import DEFAULT_ATLASES, atlas_files, read_atlases
-from ..output.console import make_table, print_csv_text, print_json, say, show
+from ..output.console import say
 from ..output.progress import progress_bar
+from ..output.table import Table, print_result
 from ..outputs import check_folder, write_files
 from ..startup import use_one_blas_thread
 
 if TYPE_CHECKING:
     from uplift.colorimetry.illuminants import Illuminant
-    from uplift.lab.comparison.compare import Comparison
-    from uplift.lab.runner import Row
+    from uplift.extras.papers.representations.compare import Comparison, Row
 
 FILES = ("compare-boxes.png", "compare-cost.png", "compare.html")
 SPECTRA = ("surfaces.csv", "lights.csv")
@@ -101,7 +101,7 @@ def command(
     force: bool,
 ) -> None:
     use_one_blas_thread()
-    from uplift.lab.comparison.compare import check_target
+    from uplift.extras.papers.representations.compare import check_target
 
     if write is not None:
         if output is None or filters or tolerance is not None:
@@ -116,7 +116,7 @@ def command(
     check_folder(output, FILES, inputs=atlas_files(files))
     comparison, tuned = _measure(files, lights, filters=filters, quick=quick)
     if output is not None:
-        from uplift.lab.comparison.pictures import (
+        from uplift.extras.papers.representations.pictures import (
             render_comparison,
             write_boxes,
             write_costs,
@@ -134,7 +134,9 @@ def command(
     elif style == "table":
         _print_table(comparison, tuned, every=every)
     else:
-        _print_records(comparison, tuned, style)
+        rows = {"representations": comparison.rows, "filters": tuned}
+        data = {"facts": dict(comparison.facts), **rows}
+        print_result(style, data, *map(Table, rows.values()))
 
 
 def _write_spectra(
@@ -142,8 +144,8 @@ def _write_spectra(
 ) -> None:
     from uplift.atlas.atlas import merge
     from uplift.atlas.sources import write_atlas
-    from uplift.extras.scene.representations import find_representation
-    from uplift.lab.comparison.compare import make_scene, represent
+    from uplift.extras.papers.representations.compare import make_scene, represent
+    from uplift.extras.papers.representations.registry import find_representation
 
     representation = find_representation(name)
     check_folder(output, SPECTRA, inputs=atlas_files(files))
@@ -164,16 +166,24 @@ def _measure(
     filters: bool,
     quick: bool,
 ) -> tuple[Comparison, list[Row]]:
-    from uplift.lab.comparison.compare import compare, make_scene
-    from uplift.lab.comparison.fitted import scene_representations
-    from uplift.lab.comparison.tuning import COARSE_STRIDE, FINE_STRIDE, tune_filters
+    from uplift.extras.papers.representations.compare import compare, make_scene
+    from uplift.extras.papers.representations.fitted import scene_representations
+    from uplift.extras.papers.representations.tuning import (
+        COARSE_STRIDE,
+        FINE_STRIDE,
+        tune_filters,
+    )
+    from uplift.extras.scene.passes.representation import pass_representations
 
     scene = make_scene(read_atlases(files), lights)
     if quick:
         scene = scene.thinned()
     with progress_bar("representations") as progress:
         comparison = compare(
-            scene, scene_representations(scene), quick=quick, progress=progress
+            scene,
+            (*scene_representations(scene), *pass_representations()),
+            quick=quick,
+            progress=progress,
         )
     if not filters:
         return comparison, []
@@ -185,7 +195,7 @@ def _measure(
 
 def _print_advice(comparison: Comparison, tolerance: float) -> None:
     from uplift.extras.pages.format import format_error, format_time
-    from uplift.lab.comparison.compare import cheapest
+    from uplift.extras.papers.representations.compare import cheapest
 
     for name, title in comparison.sets.items():
         rows = comparison.of(name)
@@ -206,36 +216,28 @@ def _print_advice(comparison: Comparison, tolerance: float) -> None:
 
 def _print_table(comparison: Comparison, tuned: list[Row], *, every: bool) -> None:
     from uplift.extras.pages.format import format_time
-    from uplift.lab.comparison.compare import HEADINGS, pareto
+    from uplift.extras.papers.representations.compare import HEADINGS, pareto
 
+    headings = {
+        "representation": "representation",
+        "mean": "mean",
+        "median": "median",
+        "q97_5": "97.5 %",
+        "floats": "floats",
+        "light_floats": "of a light",
+        "ns": "product",
+    }
+    formats: dict[str, Any] = {"floats": ".1f", "light_floats": ".1f"}
+    formats["ns"] = format_time
     tables = []
     for name, title in comparison.sets.items():
-        numbers = ("mean", "median", "97.5 %", "floats", "of a light", "product")
-        table = make_table(("representation",), numbers, title=f"ΔE00 under {title}")
         rows = comparison.of(name)
-        for row in rows if every else pareto(rows):
-            errors = (f"{row[key]:.3f}" for key in ("mean", "median", "q97_5"))
-            floats = (f"{row[key]:.1f}" for key in ("floats", "light_floats"))
-            time = format_time(row["ns"])
-            table.add_row(row["representation"], *errors, *floats, time)
-        tables.append(table)
+        shown = rows if every else pareto(rows)
+        title = f"ΔE00 under {title}"
+        tables.append(Table(shown, headings, title, formats=formats))
     if tuned:
+        rows = sorted(tuned, key=itemgetter("lights", "samples", "mean"))
+        texts = {key: key for key in ("lights", "samples", "filter", "parameters")}
         title = "point sampling after the best low-pass filter of each kind"
-        texts = ("lights", "samples", "filter", "parameters")
-        table = make_table(texts, HEADINGS.values(), title=title)
-        for row in sorted(tuned, key=itemgetter("lights", "samples", "mean")):
-            errors = (f"{row[key]:.3f}" for key in HEADINGS)
-            table.add_row(*(str(row[key]) for key in texts), *errors)
-        tables.append(table)
-    show(*tables)
-
-
-def _print_records(comparison: Comparison, tuned: list[Row], style: str) -> None:
-    from uplift.extras.files.csv import records_csv
-
-    tables = {"representations": comparison.rows, "filters": tuned}
-    if style == "json":
-        print_json({"facts": dict(comparison.facts), **tables})
-        return
-    for table in filter(None, tables.values()):
-        print_csv_text(records_csv(table))
+        tables.append(Table(rows, texts | HEADINGS, title))
+    print_result("table", None, *tables)

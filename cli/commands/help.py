@@ -6,6 +6,7 @@ import click
 
 from ..output.console import emit, paragraph, print_fields, say
 from ..output.diagnostics import BAD_INPUT, EXIT_CODES, FAILED_CHECK, INTERNAL_ERROR
+from ..replaced import current_words
 
 EXIT_CODE_MEANINGS = {
     "0": "success, or help was shown",
@@ -89,10 +90,10 @@ def command(words: tuple[str, ...]) -> None:
         _, parts = TOPICS[words[0]]
         _print_parts(parts())
     else:
-        emit(_find_context(words).get_help())
+        emit(find_context(current_words(list(words))).get_help())
 
 
-def _find_context(names: Iterable[str]) -> click.Context:
+def find_context(names: list[str]) -> click.Context:
     """Return the context of a command by its name, or of a subcommand by two."""
     context = click.get_current_context().find_root()
     for name in names:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -13,16 +13,18 @@ from uplift.common.errors import OptionError
 from uplift.common.text import pluralise
 
 from .. import options
-from ..output.console import has_colours, make_table, paragraph, print_json, say, show
+from ..output.console import has_colours, paragraph, print_json, say
+from ..output.table import Table, swatch
 from ..outputs import check_outputs
 
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
+    from rich.text import Text
 
     from uplift.common.arrays import Array
-    from uplift.extras.palette.design import Design, Matrix
-    from uplift.extras.palette.palette import Palette, SpectrumSpec
+    from uplift.extras.papers.palette.design import Design, Matrix
+    from uplift.extras.papers.palette.palette import Palette, SpectrumSpec
 
 LEGEND = "requested, obtained, factor model, ΔE00 of obtained/model; * designed"
 
@@ -87,13 +89,13 @@ def command(
     force: bool,
 ) -> None:
     from uplift.common.files import write_text
-    from uplift.extras.palette.design import design, matrix, write_designed
-    from uplift.extras.palette.factor import standard_model
-    from uplift.extras.palette.picture import cutaway
-    from uplift.extras.palette.plots import plot_matrix, plot_spectra
-    from uplift.extras.palette.relight_page import page, relighting
-    from uplift.extras.palette.spec import read_palette
-    from uplift.extras.palette.unmet import unmet_goals
+    from uplift.extras.papers.palette.design import design, matrix, write_designed
+    from uplift.extras.papers.palette.factor import standard_model
+    from uplift.extras.papers.palette.picture import cutaway
+    from uplift.extras.papers.palette.plots import plot_matrix, plot_spectra
+    from uplift.extras.papers.palette.relight_page import page, relighting
+    from uplift.extras.papers.palette.spec import read_palette
+    from uplift.extras.papers.palette.unmet import unmet_goals
 
     palette = read_palette(spec)
     check_outputs(output, plot_path, spectra_path, html, inputs=palette.sources)
@@ -101,10 +103,11 @@ def command(
     solution = design(palette, standard_model(palette.sensor, palette.count))
     colours = matrix(solution)
     unmet = [str(goal) for goal in unmet_goals(solution)]
+    result = _result(solution, colours, unmet)
     if style == "json":
-        _print_json(solution, colours, unmet)
+        print_json(result)
     else:
-        _print_table(solution, colours, unmet)
+        _print_matrix(result)
     if output is not None:
         count = write_designed(solution, output, force=force)
         say(f"{output}: {pluralise(count, 'designed material')}", err=True)
@@ -134,7 +137,7 @@ def _read_picture(
         return None
     if html is None:
         raise click.UsageError("--image requires --html, the page to write.")
-    from uplift.extras.palette.picture import read_weights
+    from uplift.extras.papers.palette.picture import read_weights
 
     colours: dict[str, str] = {}
     for label in labels:
@@ -148,44 +151,8 @@ def _read_picture(
     return read_weights(image, names, colours or None)
 
 
-def _print_table(design: Design, colours: Matrix, unmet: Sequence[str]) -> None:
-    import numpy as np
-    from rich.text import Text
-
-    from uplift.extras.colour.srgb import hex_codes
-
-    coloured = has_colours()
-    table = make_table(("material",))
-    for light in design.palette.lights:
-        table.add_column(light.name + "*" * light.designed, no_wrap=True)
-    for row, material in enumerate(design.palette.materials):
-        cells = []
-        for column in range(len(design.palette.lights)):
-            at = row, column
-            shown = [colours.obtained[at], colours.factor[at]]
-            error = "–"
-            if not math.isnan(colours.delta_e[at]):
-                shown.insert(0, colours.target[at])
-                error = f"{colours.delta_e[at]:.2f}"
-            cell = Text()
-            for code in hex_codes(np.stack(shown)):
-                if coloured:
-                    cell.append("    ", style=f"on {code}")
-                else:
-                    cell.append(code)
-                cell.append(" ")
-            cells.append(cell.append(f"{error}/{colours.model_error[at]:.2f}"))
-        table.add_row(material.name + "*" * material.designed, *cells)
-    show(table)
-    say()
-    paragraph(LEGEND)
-    for goal in unmet:
-        paragraph(f"not met: {goal}")
-    if not unmet:
-        say("all goals are met")
-
-
-def _print_json(design: Design, colours: Matrix, unmet: Sequence[str]) -> None:
+def _result(design: Design, colours: Matrix, unmet: Sequence[str]) -> dict[str, Any]:
+    """Return a design as JSON values."""
     palette = design.palette
     model = design.model
     cells = []
@@ -203,7 +170,7 @@ def _print_json(design: Design, colours: Matrix, unmet: Sequence[str]) -> None:
                 "model_error": float(colours.model_error[at]),
             }
             cells.append(cell)
-    fields = {
+    return {
         "wavelengths": palette.sensor.wavelengths.tolist(),
         "coefficients": model.count,
         "lights": _parts(palette.lights, design.powers, model.light),
@@ -216,7 +183,6 @@ def _print_json(design: Design, colours: Matrix, unmet: Sequence[str]) -> None:
         "to_rgb": model.matrix.tolist(),
         "missed": unmet,
     }
-    print_json(fields)
 
 
 def _parts(
@@ -233,3 +199,40 @@ def _parts(
         }
         for spec, samples in zip(specs, spectra, strict=True)
     ]
+
+
+def _print_matrix(result: dict[str, Any]) -> None:
+    """Print the colours of the materials in rows, by lights in columns."""
+    rows: dict[str, dict[str, Any]] = {}
+    for material in result["materials"]:
+        title = material["name"] + "*" * material["designed"]
+        rows[material["name"]] = {"material": title}
+    for cell in result["colours"]:
+        rows[cell["material"]][f"light {cell['light']}"] = cell
+    headings = {"material": "material"}
+    formats = {}
+    for light in result["lights"]:
+        key = f"light {light['name']}"
+        headings[key] = light["name"] + "*" * light["designed"]
+        formats[key] = _cell
+    Table(list(rows.values()), headings, formats=formats).print_text()
+    say()
+    paragraph(LEGEND)
+    for goal in result["missed"]:
+        paragraph(f"not met: {goal}")
+    if not result["missed"]:
+        say("all goals are met")
+
+
+def _cell(colour: dict[str, Any]) -> Text:
+    import numpy as np
+    from rich.text import Text
+
+    from uplift.extras.colour.srgb import hex_codes
+
+    shown = [colour[kind] for kind in ("wanted", "obtained", "factor") if colour[kind]]
+    parts = []
+    for code in hex_codes(np.array(shown)):
+        parts.append(swatch(code, "" if has_colours() else code))
+    missed = "–" if colour["missed"] is None else f"{colour['missed']:.2f}"
+    return Text(" ").join([*parts, Text(f"{missed}/{colour['model_error']:.2f}")])

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from functools import partial
 from itertools import chain
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -14,21 +13,10 @@ from uplift.common.text import pluralise
 
 from .. import also as further
 from .. import options
-from ..colours import is_colour
-from ..output.answers import (
-    format_rgb,
-    patch,
-    print_spectrum,
-)
-from ..output.console import (
-    paragraph,
-    print_json,
-    print_json_answers,
-    say,
-)
+from ..output.answers import format_rgb
+from ..output.console import paragraph, print_json, say
 from ..output.passes import print_numbers
-from ..output.query_blocks import json_objects, print_csv_answers, print_table
-from ..output.query_fields import answer_fields
+from ..output.query import print_answers
 from ..outputs import check_outputs
 from ..queries import Answers, colour_options
 
@@ -47,6 +35,7 @@ if TYPE_CHECKING:
         "lights",
         "also",
         "style",
+        "details",
         "plot_path",
     ),
     help="""Query the spectra of colours: R G B, '#rrggbb', or '-' for lines on standard
@@ -67,6 +56,7 @@ if TYPE_CHECKING:
 
     \b
     More examples:
+      uplift query '#cc3319' --details
       uplift query 1.4 0.3 -0.1 --out-of-gamut desaturate
       uplift query --input-space P3-D65 0.2 0.9 0.3 --out-of-gamut desaturate
       uplift query --xyz 0.05 0.2 0.1
@@ -92,11 +82,18 @@ if TYPE_CHECKING:
     """,
 )
 @colour_options
-@further.also("COLOUR", is_colour, "Colour of the same thing under another light")
+@further.also(
+    "COLOUR", further.is_colour, "Colour of the same thing under another light"
+)
 @further.noise
 @further.balance
 @options.light("Illuminant under which colour and standard error are shown", "none")
 @options.table_json_or_csv
+@options.flag(
+    "--details",
+    help="Print also the cube, the cell, hue, HSV, HSL and YIQ, and the round trip of "
+    "one colour. JSON has them always.",
+)
 @options.plot("Plot the spectra")
 @click.option(
     "--check",
@@ -122,6 +119,7 @@ def command(
     noise: tuple[float, float] | None,
     balance: str,
     style: str,
+    details: bool,
     plot_path: str | None,
     stored: str | None,
     tolerance: float,
@@ -134,11 +132,7 @@ def command(
         print_numbers(_pass_numbers(passes, colours), style)
         return
     if stored is not None:
-        given = [colours[name] for name in ("colour", "input_path", "xyz", "xy")]
-        if given != [(), None, None, None]:
-            raise click.UsageError(
-                "--check takes the colours from its FILE: give no others."
-            )
+        options.exclude("--check", "colour", "input_path", "xyz", "xy")
         _check(stored, colours["cube_path"], colours["mode"], tolerance, style)
         return
     check_outputs(plot_path)
@@ -155,27 +149,17 @@ def command(
         results = list(chain.from_iterable(blocks))
         plot_spectra(answers.cube, results, plot_path, force=force)
         say(f"{plot_path}: {pluralise(len(results), 'colour')}", err=True)
-    if style == "json":
-        texts = map(partial(json_objects, answers), blocks)
-        print_json_answers(texts, single=answers.single)
-    elif style == "csv":
-        print_csv_answers(answers, blocks)
-    elif answers.single:
-        (result,) = chain.from_iterable(blocks)
-        print_spectrum(
-            answer_fields(answers, result),
-            result.wavelengths,
-            result.reflectance,
-            complete=colours["wavelengths"] is not None,
-            patches={"linear RGB": patch(answers.cube, result.rgb)},
-        )
-    else:
-        print_table(answers, blocks)
+    print_answers(answers, blocks, style, details=details)
     if style == "table" and colours["cube_path"] is None:
-        cubes = list(Path().glob("*.uplift"))
-        if len(cubes) == 1:
-            hint = f"to use the cube of this folder, add --cube {cubes[0]}"
-            paragraph(f"hint: {hint}", err=True)
+        _suggest_cube()
+
+
+def _suggest_cube() -> None:
+    """Name the cube of the folder if there is one."""
+    cubes = list(Path().glob("*.uplift"))
+    if len(cubes) == 1:
+        hint = f"to use the cube of this folder, add --cube {cubes[0]}"
+        paragraph(f"hint: {hint}", err=True)
 
 
 def _pass_numbers(
@@ -206,22 +190,27 @@ def _check(
     stored = read_answers(path)
     differences = stored.differences(load(cube_path), mode)
     worst = int(differences.argmax())
-    passed = bool(differences[worst] <= tolerance)
+    largest = float(differences[worst])
+    rgb = stored.rgb[worst]
     moved = int((differences > tolerance).sum())
+    passed = largest <= tolerance
     if style == "json":
-        figures = {
-            "largest": float(differences[worst]),
-            "worst_rgb": stored.rgb[worst].tolist(),
-            "moved": moved,
-        }
-        counts = {"answers": path, "colours": len(differences)}
-        print_json(counts | figures | {"tolerance": tolerance, "passed": passed})
+        print_json(
+            {
+                "answers": path,
+                "colours": len(differences),
+                "largest": largest,
+                "worst_rgb": rgb.tolist(),
+                "moved": moved,
+                "tolerance": tolerance,
+                "passed": passed,
+            }
+        )
     else:
         say(
             f"{path}: {'passed' if passed else 'FAILED'}, {moved} of "
-            f"{pluralise(len(differences), 'answer')} "
-            f"moved by more than {tolerance:g}, the most by {differences[worst]:.2g} "
-            f"({format_rgb(stored.rgb[worst])})"
+            f"{pluralise(len(differences), 'answer')} moved by more than "
+            f"{tolerance:g}, the most by {largest:.2g} ({format_rgb(rgb)})"
         )
     if not passed:
         raise SystemExit(1)

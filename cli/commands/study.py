@@ -12,8 +12,9 @@ from uplift.common.text import pluralise
 
 from .. import options
 from ..inputs import DEFAULT_ATLASES, atlas_files, read_atlases
-from ..output.console import make_table, print_csv_text, print_json, say, show
+from ..output.console import say
 from ..output.progress import progress_bar
+from ..output.table import Table, print_result
 from ..outputs import check_folder, write_files
 from ..startup import enable_jit_cache
 
@@ -60,45 +61,11 @@ def command() -> None:
     """Hold the subcommands."""
 
 
-def _print(
-    style: str,
-    records: Any,
-    rows: Sequence[Row],
-    table: Sequence[Row],
-    title: str | None = None,
-) -> None:
-    """Print JSON of the records, CSV of rows, or a table with three digits."""
-    from uplift.extras.files.csv import records_csv
-
-    if style == "json":
-        print_json(records)
-    elif style == "csv":
-        print_csv_text(records_csv(rows))
-    else:
-        _print_table(table, title)
-
-
-def _print_table(rows: Sequence[Row], title: str | None = None) -> None:
-    texts = [key for key, value in rows[0].items() if isinstance(value, str)]
-    numbers = [key for key in rows[0] if key not in texts]
-    table = make_table(texts, [HEADINGS.get(key, key) for key in numbers], title=title)
-    for row in rows:
-        table.add_row(*(_cell(row[key]) for key in (*texts, *numbers)))
-    show(table)
-
-
-def _cell(value: Any) -> str:
-    if value is None:
-        return ""
-    return f"{value:.3g}" if isinstance(value, float) else str(value)
-
-
-def _without(records: Sequence[Row], *names: str) -> list[Row]:
-    """Return records without some keys."""
-    shown = list[Row]()
-    for record in records:
-        shown.append({key: record[key] for key in record if key not in names})
-    return shown
+def _table(rows: Sequence[Row], *hidden: str, title: str = "") -> Table:
+    """Return rows as a table, without some columns in text."""
+    columns = [key for key in rows[0] if key not in hidden]
+    headings = {key: HEADINGS.get(key, key) for key in columns}
+    return Table(rows, headings, title, ".3g")
 
 
 @command.command(
@@ -106,7 +73,7 @@ def _without(records: Sequence[Row], *names: str) -> list[Row]:
     help="""Reconstruct measured spectra from their moments and compare them with the
     measurements.
 
-    Tests 0 to N moments of mirrored and unmirrored, warped and unwarped spectra, for
+    Tests 0 to 15 moments of mirrored and unmirrored, warped and unwarped spectra, for
     all atlases together and for each (Tódová 2020, table 4.1 and appendix B.1). Errors
     are mean and largest ΔE76 under D65, ΔE00 under D65, A, FL2, FL7, FL11 and LED-B3,
     and the rms difference. The table shows mean / largest ΔE76 of all atlases together;
@@ -121,32 +88,20 @@ def _without(records: Sequence[Row], *names: str) -> list[Row]:
     Examples:
       uplift study moments
       uplift study moments --atlas macbeth --output moments --force
-      uplift study moments --max-moments 8 --format json
+      uplift study moments --format json
     """,
 )
 @options.atlas("Atlas", DEFAULT_ATLASES)
-@options.whole(
-    "--max-moments",
-    metavar="N",
-    default=15,
-    help="Largest number of moments, up to 32.",
-)
 @options.output(help="Folder for plots.", metavar="DIR")
 @options.table_json_or_csv
 @options.force
-def moments(
-    files: Sequence[str],
-    max_moments: int,
-    output: str | None,
-    style: str,
-    force: bool,
-) -> None:
+def moments(files: Sequence[str], output: str | None, style: str, force: bool) -> None:
     from uplift.lab.study.moments import study_moments
 
     atlases = read_atlases(files)
     check_folder(output, MOMENTS_PLOTS, inputs=atlas_files(files))
     with progress_bar("reconstructions") as progress:
-        study = study_moments(atlases, max_moments, progress=progress)
+        study = study_moments(atlases, progress=progress)
     rows = study.rows()
     if output is not None:
         from uplift.lab.study.plots import plot_errors, plot_patches, plot_worst
@@ -158,14 +113,17 @@ def moments(
             partial(plot_patches, study),
             partial(plot_worst, study),
         )
-    counts = range(max_moments + 1)
-    table = [{"moments": str(count)} for count in counts]
-    cases = product(study.techniques, counts)
+    if style != "table":
+        print_result(style, rows, Table(rows))
+        return
+    errors: dict[int, dict[str, Any]] = {}
+    cases = product(study.techniques, range(study.errors.shape[1]))
     # The rows of all atlases together come first.
     for (technique, count), row in zip(cases, rows, strict=False):
         mean, largest = row["delta_e_76_D65_mean"], row["delta_e_76_D65_max"]
-        table[count][technique.label] = f"{mean:.2f} / {largest:6.2f}"
-    _print(style, rows, rows, table, "mean / largest ΔE76 under D65")
+        cell = f"{mean:.2f} / {largest:6.2f}"
+        errors.setdefault(count, {"moments": count})[technique.label] = cell
+    _table(list(errors.values()), title="mean / largest ΔE76 under D65").print_text()
 
 
 @command.command(
@@ -187,33 +145,27 @@ def moments(
     \b
     Examples:
       uplift study held-out --atlas paints.csv
-      uplift study held-out --atlas rawtoaces --coefficients 17 --splits 10
+      uplift study held-out --atlas rawtoaces --coefficients 17
       uplift study held-out --format json
     """,
 )
 @options.atlas("Atlas", DEFAULT_ATLASES)
-@click.option(
-    "--splits",
-    type=options.Whole(1, 1000),
-    default=3,
-    help="Number of splits of each atlas.",
-)
 @options.whole("--dim", default=32, help="Lattice nodes along each axis.")
 @options.coefficients
 @options.table_json_or_csv
-def held_out(
-    files: Sequence[str], splits: int, dim: int, coefficients: int, style: str
-) -> None:
+def held_out(files: Sequence[str], dim: int, coefficients: int, style: str) -> None:
     enable_jit_cache()
     from uplift.lab.study.held_out import holdout
 
     records: list[dict[str, Any]] = []
     for name, atlas in read_atlases(files).items():
         with progress_bar(name) as progress:
-            study = holdout(atlas, splits, progress, dim=dim, coefficients=coefficients)
+            study = holdout(atlas, progress, dim=dim, coefficients=coefficients)
         records += [{"atlas": name, **record} for record in study]
-    rows = _without(records, "standard_error")
-    _print(style, records, rows, rows)
+    rows = []
+    for record in records:
+        rows.append({key: record[key] for key in record if key != "standard_error"})
+    print_result(style, records, _table(rows))
     for record in records if style == "table" else ():
         if errors := record.get("standard_error"):
             shares = (
@@ -271,8 +223,7 @@ def stability(
         from uplift.lab.study.plots import plot_map
 
         write_files(output, STABILITY_PLOTS, partial(plot_map, rows))
-    table = _without(rows, "success", "points", "stand_ins")
-    _print(style, rows, rows, table)
+    print_result(style, rows, _table(rows, "success", "points", "stand_ins"))
     if style == "table":
         failed = [row["unfitted"] for row in rows if row["unfitted"]]
         nodes = sum(row["realisable"] for row in rows)
@@ -370,6 +321,5 @@ def sensitivity(
 
         write_files(output, SENSITIVITY_PLOTS, partial(plot_locality, changes))
     rows = [change.row() for change in changes]
-    _print(style, {"moves": moves, "changes": rows}, (), moves)
-    if style == "table" and rows:
-        _print_table(rows)
+    tables = [_table(moves), *([_table(rows)] if rows else [])]
+    print_result(style, {"moves": moves, "changes": rows}, *tables)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -11,16 +11,17 @@ from uplift.common.text import pluralise
 
 from .. import options, sensor_options
 from ..inputs import DEFAULT_ATLASES, atlas_files, check_range, read_atlases
-from ..output.console import make_table, print_csv, print_json, say, show
+from ..output.console import print_json, say
 from ..output.progress import progress_bar
+from ..output.table import Table
 from ..outputs import check_outputs
 
 if TYPE_CHECKING:
     from uplift.colorimetry.illuminants import Illuminant
     from uplift.colorimetry.sensor import Sensor
     from uplift.common.arrays import Array
-    from uplift.extras.scene.wavelengths import Choice
-    from uplift.extras.scene.wavelengths.sampling import RenderSetup
+    from uplift.extras.papers.wavelengths.choice import Choice
+    from uplift.extras.papers.wavelengths.sampling import RenderSetup
 
 
 @click.command(
@@ -40,20 +41,17 @@ if TYPE_CHECKING:
     Examples:
       uplift wavelengths --count 8
       uplift wavelengths --tolerance 1 --light D65 --light FL11 --plot chosen.png
-      uplift wavelengths --tolerance 0.5 --measure p95 --atlas paints.csv
+      uplift wavelengths --tolerance 0.5 --atlas paints.csv
       uplift wavelengths --wavelengths 400:700:20 --light A --format csv
       uplift wavelengths --count 4 --method meyer --light C --atlas macbeth
       uplift wavelengths --orders 3 2 1 --light C --atlas macbeth
     """,
 )
 @options.whole("--count", metavar="N", help="Number of wavelengths, 1 to 40.")
-@options.tolerance(help="Choose the fewest wavelengths with an error below this ΔE00.")
-@options.wavelengths("; only their weights and powers are fitted.")
-@click.option(
-    "--measure",
-    type=click.Choice(("mean", "p95", "max")),
-    help="Statistic of --tolerance over all materials and lights. [default: max]",
+@options.tolerance(
+    help="Choose the fewest wavelengths with all errors below this ΔE00."
 )
+@options.wavelengths("; only their weights and powers are fitted.")
 @click.option(
     "--method",
     type=click.Choice(("optimised", "meyer", "uniform", "bins", "fitted")),
@@ -96,7 +94,7 @@ def command(
     from uplift.atlas.atlas import merge
     from uplift.atlas.resampling import on_grid
     from uplift.colorimetry.observer import require_observer, sensor
-    from uplift.extras.scene.wavelengths import grid, make_setup
+    from uplift.extras.papers.wavelengths.sampling import grid, make_setup
 
     check_outputs(plot_path, inputs=atlas_files(files))
     require_observer(observer, "weights of wavelengths")
@@ -107,19 +105,18 @@ def command(
     with progress_bar("fitting wavelengths"):
         choice = _choose(setup, **goal)
     if plot_path is not None:
-        from uplift.extras.scene.wavelengths.plots import plot_choice
+        from uplift.extras.papers.wavelengths.plots import plot_choice
 
         plot_choice(setup, choice, plot_path, force=force)
         say(f"{plot_path}: lights, wavelengths and weights", err=True)
-    errors = _summarise(choice, atlas.names)
+    result = _result(choice, target, atlas.names)
+    rows = _rows(result)
     if style == "json":
-        _print_json(choice, target, len(atlas), errors)
+        print_json(result)
     elif style == "csv":
-        lights = choice.sampling.lights
-        headings = ["wavelength", *"XYZ", *"rgb", *map("power {}".format, lights)]
-        print_csv(headings, _rows(choice, target))
+        Table(rows).print_csv()
     else:
-        _print_table(choice, target, len(atlas), errors)
+        _print_tables(result, rows)
 
 
 def _check_goal() -> None:
@@ -128,12 +125,8 @@ def _check_goal() -> None:
         raise click.UsageError(
             "Give one of --count, --tolerance, --wavelengths and --orders."
         )
-    if ("measure" in given and "tolerance" not in given) or (
-        "method" in given and not given & {"count", "tolerance"}
-    ):
-        raise click.UsageError(
-            "--measure requires --tolerance, --method requires --count or --tolerance."
-        )
+    if "method" in given and not given & {"count", "tolerance"}:
+        raise click.UsageError("--method requires --count or --tolerance.")
     if "channels" in given and "orders" not in given:
         raise click.UsageError("--channels requires --orders.")
 
@@ -143,59 +136,38 @@ def _choose(
     count: int | None,
     tolerance: float | None,
     wavelengths: Array | None,
-    measure: str | None,
     method: str | None,
     orders: tuple[int, int, int] | None,
     channels: str | None,
 ) -> Choice:
-    from uplift.extras.scene import wavelengths as library
+    from uplift.extras.papers.wavelengths import choice
 
     if orders is not None:
-        return library.choose_orders(setup, orders, channels or "opponent")
+        return choice.choose_orders(setup, orders, channels or "opponent")
     if wavelengths is not None:
-        check_range(wavelengths, library.grid())
-        return library.fit_weights(setup, wavelengths)
-    return library.choose(
-        setup,
-        count=count,
-        target=tolerance,
-        measure=measure or "max",
-        method=method or "optimised",
+        check_range(wavelengths, setup.wavelengths)
+        return choice.fit_weights(setup, wavelengths)
+    return choice.choose(
+        setup, count=count, target=tolerance, method=method or "optimised"
     )
 
 
-def _summarise(choice: Choice, materials: Sequence[str]) -> dict[str, dict[str, Any]]:
-    """Return statistics of the errors and the worst material, by light."""
-    from uplift.extras.scene.wavelengths.sampling import statistics
+def _result(choice: Choice, sensor: Sensor, materials: Sequence[str]) -> dict[str, Any]:
+    """Return a choice as JSON values; its errors are those of ``materials``."""
+    from uplift.extras.report.comparison import mean_p95_max
 
-    by_light = dict(zip(choice.sampling.lights, choice.errors, strict=True))
+    sampling = choice.sampling
+    by_light = dict(zip(sampling.lights, choice.errors, strict=True))
     if len(by_light) > 1:
         by_light["all lights"] = choice.errors
-    summary = {}
-    for light, errors in by_light.items():
-        worst = materials[errors.argmax() % len(materials)]
-        summary[light] = {**statistics(errors), "worst": worst}
-    return summary
-
-
-def _rows(choice: Choice, sensor: Sensor) -> list[list[float]]:
-    """Return wavelength, weights to XYZ and to RGB, and powers of the lights."""
-    import numpy as np
-
-    sampling = choice.sampling
-    weights = (sampling.to_xyz, sampling.to_rgb(sensor))
-    table = np.column_stack([sampling.wavelengths, *weights, sampling.powers.T])
-    return table.tolist()
-
-
-def _print_json(
-    choice: Choice, sensor: Sensor, materials: int, errors: dict[str, dict[str, Any]]
-) -> None:
-    sampling = choice.sampling
-    fields = {
+    errors = {}
+    for light, delta_e in by_light.items():
+        worst = materials[delta_e.argmax() % len(materials)]
+        errors[light] = {**mean_p95_max(delta_e), "worst": worst}
+    return {
         "method": choice.method,
         "count": len(sampling),
-        "materials": materials,
+        "materials": len(materials),
         "observer": sensor.observer,
         "space": sensor.space,
         "illuminant": sensor.illuminant,
@@ -205,25 +177,31 @@ def _print_json(
         "powers": dict(zip(sampling.lights, sampling.powers.tolist(), strict=True)),
         "errors": errors,
     }
-    print_json(fields)
 
 
-def _print_table(
-    choice: Choice, sensor: Sensor, materials: int, errors: dict[str, dict[str, Any]]
-) -> None:
-    lights = choice.sampling.lights
-    count = pluralise(len(choice.sampling), "wavelength")
-    title = f"{count}, {choice.method}: weights"
-    weights = make_table((), ("nm", *"XYZRGB"), title=title)
-    powers = make_table((), ("nm", *lights), title="power of the lights")
-    for wavelength, *values in _rows(choice, sensor):
-        cells = [f"{value:.4f}" for value in values]
-        weights.add_row(f"{wavelength:.1f}", *cells[:6])
-        powers.add_row(f"{wavelength:.1f}", *cells[6:])
-    title = f"ΔE00 of {pluralise(materials, 'material')}"
-    table = make_table(("light",), ("mean", "95 %", "max"), title=title)
-    table.add_column("worst material")
-    for light, row in errors.items():
-        *numbers, worst = row.values()
-        table.add_row(light, *map("{:.3f}".format, numbers), worst)
-    show(weights, powers, table)
+def _rows(result: Mapping[str, Any]) -> list[dict[str, float]]:
+    """Return wavelength, weights to XYZ and to RGB, and powers of the lights."""
+    import numpy as np
+
+    powers = result["powers"]
+    names = ["wavelength", *"XYZrgb", *map("power {}".format, powers)]
+    weights = result["wavelengths"], result["to_xyz"], result["to_rgb"]
+    table = np.column_stack([*weights, *powers.values()])
+    return [dict(zip(names, row, strict=True)) for row in table.tolist()]
+
+
+def _print_tables(result: Mapping[str, Any], rows: Sequence[Mapping[str, Any]]) -> None:
+    count = pluralise(result["count"], "wavelength")
+    weights = {"wavelength": "nm", **dict(zip("XYZrgb", "XYZRGB", strict=True))}
+    powers = {"wavelength": "nm"}
+    powers |= {f"power {light}": light for light in result["powers"]}
+    tables = {f"{count}, {result['method']}: weights": weights}
+    tables["power of the lights"] = powers
+    formats = {"wavelength": ".1f"}
+    for title, headings in tables.items():
+        Table(rows, headings, title, ".4f", formats).print_text()
+        say()
+    errors = [{"light": light, **row} for light, row in result["errors"].items()]
+    headings = {"light": "light", "mean": "mean", "p95": "95 %", "max": "max"}
+    title = f"ΔE00 of {pluralise(result['materials'], 'material')}"
+    Table(errors, headings | {"worst": "worst material"}, title).print_text()

@@ -51,7 +51,7 @@ def flush_stdout() -> None:
         raise
 
 
-def columns() -> int:
+def window_width() -> int:
     """Return the characters of a line of the window, COLUMNS or 80."""
     return max(shutil.get_terminal_size().columns, MIN_WIDTH)
 
@@ -73,7 +73,7 @@ def paragraph(
     """
     lines = textwrap.wrap(
         printable(text),
-        columns() - indent,
+        window_width() - indent,
         break_long_words=False,
         break_on_hyphens=False,
     )
@@ -105,8 +105,22 @@ def print_json(values: Any, indent: int | None = 2) -> None:
 
 def json_output(values: Any, indent: int | None = None) -> str:
     """Return standard JSON in the characters that standard output has."""
-    is_unicode = (sys.stdout.encoding or "utf-8").lower().startswith("utf")
-    return json_text(values, indent, ascii_only=not is_unicode)
+    return json_text(values, indent, ascii_only=not _has_unicode())
+
+
+def json_row(values: Any) -> str:
+    """Return the JSON of one of many rows of finite numbers, which pydantic writes five
+    times as fast.
+    """
+    if not _has_unicode():
+        return json_output(values)
+    from pydantic_core import to_json
+
+    return json_escapes(to_json(values).decode())
+
+
+def _has_unicode() -> bool:
+    return (sys.stdout.encoding or "utf-8").lower().startswith("utf")
 
 
 def print_json_answers(blocks: Iterable[Iterable[str]], *, single: bool) -> None:
@@ -188,11 +202,11 @@ def show(*tables: SafeTable) -> None:
 
     from .tables import table_width
 
-    divided = chain.from_iterable(table.parts(columns()) for table in tables)
+    divided = chain.from_iterable(table.parts(window_width()) for table in tables)
     for number, table in enumerate(divided):
         if number:
             say()
-        width = max(columns(), table_width(table.columns))
+        width = max(window_width(), table_width(table.columns))
         body = list(table.take_body())
         Console(
             file=sys.stdout, width=width, highlight=False, markup=False, emoji=False

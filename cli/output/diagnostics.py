@@ -23,6 +23,7 @@ from uplift.common.errors import (
 from uplift.common.text import printable
 from uplift.common.version import outdated_package
 
+from ..replaced import REPLACED
 from ..startup import remove_compiled_code
 from .console import emit, json_text
 
@@ -245,10 +246,8 @@ def _renaming(error: click.ClickException) -> str:
     """Return what replaces an unknown option, if it is one of version 0.2."""
     if not isinstance(error, click.NoSuchOption) or error.ctx is None:
         return ""
-    from ..replaced import REPLACEMENTS
-
     command = error.ctx.command_path.partition(" ")[2]
-    new = REPLACEMENTS.get(command, {}).get(error.option_name, "")
+    new = REPLACED.get(f"{command} {error.option_name}", "")
     return new and f"No such option '{error.option_name}': {new} replaces it."
 
 

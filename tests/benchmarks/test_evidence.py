@@ -9,7 +9,7 @@ from numpy.testing import assert_allclose
 from benchmarks.accuracy import largest
 from benchmarks.cameras import lab_matrix, xyz_matrix
 from benchmarks.representations import closed, enhanced, with_tables_6
-from uplift.extras.scene.representations.samples import xyz_weights
+from uplift.extras.papers.representations.samples import xyz_weights
 
 
 def test_known_camera_matrices_are_found_and_keep_white():

@@ -10,9 +10,9 @@ from click.testing import CliRunner
 from uplift_cli.main import main
 
 from tests.lab.chart import faulty
+from uplift.extras.timing import ONE_THREAD
 from uplift.lab.chart import selection, task
 from uplift.lab.chart.results import read_chart
-from uplift.lab.timing import ONE_THREAD
 
 FILES = ["chart.csv", "chart.html", "chart.png"]
 FOREIGN = {each.method for each in selection.METHODS if each.needs}

@@ -14,7 +14,7 @@ from uplift_cli.main import main
 
 from uplift.atlas.sources import read_atlas
 from uplift.extras.emission.lamps import read_lamps
-from uplift.lab.timing import ONE_THREAD
+from uplift.extras.timing import ONE_THREAD
 
 FILES = ["compare-boxes.png", "compare-cost.png", "compare.html"]
 measure = cache(compare._measure)

@@ -98,7 +98,6 @@ palette palette.toml --image image.exr | --html x.html | x.html
 passes choose image.exr --atlas atlas.txt --cube cube.uplift --light lamp.csv \
 | -o x.toml | x.toml
 passes decode wood.1.exr wood.2.exr --passes passes.toml | -o x.exr | x.exr
-passes page passes.toml | -o x.html | x.html
 plan scene.toml | -o x.json | x.json
 plan scene.toml | | scene.plan.json
 query --cube cube.uplift --input colours.csv | --plot x.png | x.png

@@ -149,7 +149,6 @@ def test_passes_know_a_lamp_by_its_spectrum(run, ask, home, files):
     assert "another spectrum" in warning
     others = json.loads(result.stdout)["other_lights"]["lamp"]
     assert np.abs(np.subtract(others, numbers)).max() > 0.1
-    run("passes page passes.toml -o room.html")
 
 
 def test_scenes_name_lamps(ask, run, refuse, home, files):

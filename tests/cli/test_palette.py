@@ -111,7 +111,7 @@ def test_invalid_input_is_reported_before_any_work(
     refuse, pair, home, monkeypatch, arguments, code
 ):
     monkeypatch.setattr(
-        "uplift.extras.palette.design", lambda *_: pytest.fail("designed")
+        "uplift.extras.papers.palette.design", lambda *_: pytest.fail("designed")
     )
     assert refuse(f"palette {pair} {arguments}").code == code
     assert not (home / "a.html").exists()

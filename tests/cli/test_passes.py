@@ -70,7 +70,7 @@ def test_info(run, ask, passes):
     answer = ask("passes info passes.toml --light FL11 --light A")
     assert_allclose(answer["other_lights"]["A"], passes.light("A").numbers)
     assert len(answer["other_lights"]["FL11"]) == 6
-    assert "FL11, pass 2" in run("passes info passes.toml --light FL11").stdout
+    assert "FL11" in run("passes info passes.toml --light FL11").stdout
 
 
 def test_texture_decode(run, ask, passes, home):
@@ -124,7 +124,7 @@ def test_query(run, ask, passes):
     assert_allclose(grey["passes"], 0.5, atol=0.03)
     assert np.shape(red["passes"]) == (2, 3)
     shown = run("query 0.5 0.5 0.5 --passes passes.toml").stdout
-    assert "pass 2" in shown
+    assert "linear RGB" in shown
     rows = run("query 0.5 0.5 0.5 --passes passes.toml --format csv").stdout
     assert rows.splitlines()[0] == "r,g,b,pass,R,G,B"
     assert len(rows.splitlines()) == 3
@@ -181,9 +181,3 @@ def test_recipe(run, passes, tool):
     assert len(shown.splitlines()) > 5
     if tool == "blender":
         compile(shown, "recipe", "exec")
-
-
-def test_page(run, refuse, passes, home):
-    run("passes page passes.toml -o room.html")
-    assert "WebGL" in (home / "room.html").read_text(encoding="utf-8")
-    assert refuse("passes page passes.toml -o room.html").code == "file-exists"

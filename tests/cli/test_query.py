@@ -12,12 +12,12 @@ import matplotlib.image
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
-from uplift_cli import colours
 from uplift_cli.output.diagnostics import hint_for
 
 import uplift
 from uplift.colorimetry.observer import display_sensors
 from uplift.common.errors import ColourError
+from uplift.extras.colour import colour_source
 from uplift.extras.colour.srgb import hex_codes
 
 from .conftest import warning_lines
@@ -244,7 +244,7 @@ def test_files_that_cannot_be_read_are_errors(refuse, home, table):
 def test_lines_and_their_numbers_do_not_depend_on_the_blocks(
     ask, run, table, monkeypatch, chunk
 ):
-    monkeypatch.setattr(colours, "CHUNK", chunk)
+    monkeypatch.setattr(colour_source, "CHUNK", chunk)
     path = table("\ufeffr,g,b,\u00e9\r\n0.1,0.2,0.3\r\u0020\n\n0.5,0.5,0.5")
     answers = ask("query --input", path)
     assert_array_equal(

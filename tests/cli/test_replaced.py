@@ -1,20 +1,29 @@
-"""Options of version 0.2 are errors that name what replaces them."""
+"""Commands run under their old names; old options are errors that name what replaces
+them.
+"""
 
 import pytest
 from uplift_cli.main import main
-from uplift_cli.replaced import REPLACEMENTS
+from uplift_cli.replaced import REPLACED
 
 from .conftest import commands
 
-CASES = [
-    (command, old, new)
-    for command, options in REPLACEMENTS.items()
-    for old, new in options.items()
-]
+COMMANDS = {old: new for old, new in REPLACED.items() if " " not in old}
+OPTIONS = [old.rsplit(" ", 1) for old in REPLACED if " " in old]
 
 
-@pytest.mark.parametrize(("command", "old", "new"), CASES)
-def test_old_names_are_errors_with_the_new_one(run, command, old, new):
+@pytest.mark.parametrize(("old", "new"), COMMANDS.items())
+def test_commands_run_under_old_names_with_a_note(run, old, new):
+    result = run(f"{old} --help")
+    assert result.stdout == run(f"{new} --help").stdout == run(f"help {old}").stdout
+    assert result.stderr == f"note: 'uplift {old}' is 'uplift {new}'\n"
+    assert not run(f"{old} --help -q").stderr
+    assert f"  {old} " not in run("--help").stdout
+
+
+@pytest.mark.parametrize(("command", "old"), OPTIONS)
+def test_old_options_are_errors_with_the_new_one(run, command, old):
+    new = REPLACED[f"{command} {old}"]
     params = commands(main)[command].params
     known = {option for param in params for option in param.opts}
     assert old not in known

@@ -26,12 +26,12 @@ COMPUTES = {
     "build": "uplift.pipeline.entries.fit_constraints",
     "chart": "uplift.lab.chart.measure.measure_methods",
     "check": "uplift.extras.report.rebuild.rebuild",
-    "compare": "uplift.lab.comparison.compare.error_statistics",
+    "compare": "uplift.extras.papers.representations.compare.error_statistics",
     "diff": "uplift.extras.report.diff.diff_cubes",
     "lights build": "uplift.extras.emission.build.EmissionTable",
     "paints fit": "uplift.extras.paint.fit_paints",
     "paints match": "uplift.extras.paint.match",
-    "palette": "uplift.extras.palette.design",
+    "palette": "uplift.extras.papers.palette.design",
     "passes choose": "uplift.extras.scene.passes.choice.draw_paths",
     "plan": "uplift.extras.scene.plan.space.sample_colours",
     "relight": "uplift.pipeline.entries.fit_constraints",
@@ -41,7 +41,7 @@ COMPUTES = {
     "study sensitivity": "uplift.lab.study.sensitivity.perturb_answers",
     "study stability": "uplift.lab.study.stability.study_stability",
     "texture": "uplift.extras.texture.sequence.convert",
-    "wavelengths": "uplift.extras.scene.wavelengths.sampling.evaluate",
+    "wavelengths": "uplift.extras.papers.wavelengths.sampling.evaluate",
 }
 """Functions that do the long work of commands, and must not be called."""
 INVALID = """
@@ -181,8 +181,6 @@ file-exists passes choose -o mine
 file-not-found passes decode fire.exr fire.exr --passes none.toml -o x.exr
 invalid-file passes decode fire.exr fire.exr --passes palette.toml -o x.exr
 file-not-found passes info none.toml
-file-not-found passes page none.toml -o x.html
-output passes page palette.toml -o x.txt
 file-not-found passes recipe none.toml
 invalid-file passes recipe palette.toml --for nuke
 file-not-found texture wood.png -o x --passes none.toml
@@ -305,7 +303,7 @@ wavelengths --count 4 --atlas paints.xlsx --plot x.png
 """,
 }
 """Commands by the optional package that they need."""
-GROUPS = ("lights", "paints", "passes", "study")
+GROUPS = ("lab", "lights", "paints", "passes", "study")
 WITHOUT_ROWS = {
     "check": "checks all cubes that it can read",
     "export": "writes one file as its last act",

@@ -13,9 +13,9 @@ from uplift.colorimetry.likely_errors import (
     expected_error,
     familiar_distance,
     learn_radii,
-    mahalanobis,
     nearest_distances,
 )
+from uplift.extras.looks.lab_errors import mahalanobis
 
 PLACES = np.random.default_rng(5).uniform(-20, 60, (12, 3))
 

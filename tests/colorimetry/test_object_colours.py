@@ -7,7 +7,8 @@ from scipy.optimize import lsq_linear
 from scipy.spatial import ConvexHull
 
 from uplift.colorimetry import observer
-from uplift.colorimetry.object_colours import solid, solid_volume, toward_grey
+from uplift.colorimetry.object_colours import solid, toward_grey
+from uplift.extras.looks.metamer_bounds import solid_volume
 from uplift.lattice.lattice import Lattice, axis_nodes
 
 

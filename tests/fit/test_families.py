@@ -18,11 +18,11 @@ from uplift.fit.families import (
     LENGTH,
     NUGGET,
     Family,
-    families_with,
     krige_families,
     learn_relevance,
 )
 from uplift.fit.kriging import Points
+from uplift.lab.look_alikes import families_with
 
 RNG = np.random.default_rng(5)
 LIGHTS = [observer.light(name) for name in ("A", "FL11")]

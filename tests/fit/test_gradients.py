@@ -50,7 +50,13 @@ def plain_excess(cube, cell):
         for direction in DIRECTIONS:
             first = codes[low + corner] - direction * corner
             rgb = cube.decode(np.array([first, first + direction]))
-            spectra = lattice_spectra(cube.data, rgb, cube.data.sensor.wavelengths)
+            spectra = lattice_spectra(
+                cube.data.model,
+                cube.data.lattice,
+                cube.data.points,
+                rgb,
+                cube.data.sensor.wavelengths,
+            )
             by_light = [delta_e_spectra(light, *spectra) for light in LIGHTS]
             largest = max(largest, max(by_light[1:]) - by_light[0])
     return largest

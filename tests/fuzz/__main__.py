@@ -10,7 +10,7 @@ import click
 
 from tests.fuzz.commands import COMMANDS, KEPT, run_target
 from tests.fuzz.readers import READERS
-from uplift.lab.timing import environment
+from uplift.extras.timing import environment
 
 BLOCK = 5000
 """Inputs per process. A new process releases leaked memory."""

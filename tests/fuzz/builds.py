@@ -38,8 +38,8 @@ from uplift.cube.file import digest
 from uplift.extras import texture
 from uplift.extras.export.program_table import moved_cells
 from uplift.extras.export.rounding import rounding_error
+from uplift.extras.timing import environment
 from uplift.fit import base, batch
-from uplift.lab.timing import environment
 from uplift.lattice.lattice import CORNERS, Lattice
 from uplift.lookup.interpolate import MODES
 
@@ -277,7 +277,9 @@ def _colour_laws(cube: uplift.Cube, rgb: Array, folder: Path) -> Iterator[str]:
     yield from _command_laws(rgb, off, expected, folder)
     for mode in ("spectra", "moments") if shutil.which("cc") else ():
         yield from _program_laws(cube, mode, rgb)
-    stored = texture.prepare(cube, texture.Spectrum(AT)).sample(rgb.astype(np.float32))
+    stored = texture.prepare(cube, texture.Spectrum(AT)).pixels.sample(
+        rgb.astype(np.float32)
+    )
     difference = np.abs(stored - expected).max()
     if difference > 1e-5:
         yield f"textures of spectra differ by {difference:.1e}"

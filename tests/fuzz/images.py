@@ -29,14 +29,14 @@ from tests.extras.texture.test_colour_profile import (
 )
 from tests.fuzz.fuzzing import Random, choose
 from uplift.common.arrays import Array
-from uplift.extras import texture
-from uplift.extras.texture.channels import coloured_parts
-from uplift.extras.texture.colours import make_decoder, space_warnings
-from uplift.extras.texture.image import open_image
+from uplift.extras.images.channels import coloured_parts
+from uplift.extras.images.image import open_image
+from uplift.extras.images.reader import SurfaceReader
+from uplift.extras.texture.emission import light_reader
 
 WIDTH = 7
-LIGHTS = texture.prepare_lights(uplift.load_emission(), threads=1)
-SENSOR = LIGHTS.sensor
+LIGHTS = light_reader(uplift.load_emission())
+SURFACES = SurfaceReader(sensor=LIGHTS.sensor)
 HALF_MAX = 65504.0
 Curve = Callable[[Array], Array]
 
@@ -505,11 +505,11 @@ def wrong(seed: int) -> list[str]:
             pixels, channels = coloured_parts(image)[0]
             rows = image.rows(pixels, 0, pixels.window.height)
             values = rows.reshape(-1, len(pixels.channels))
-            unlimited = LIGHTS.colour_channels(channels).straight(values)
+            unlimited = LIGHTS.channels(channels).straight(values)
             light, _ = LIGHTS.decoder(pixels)(unlimited)
-            decode = make_decoder(SENSOR, pixels, "auto", "clip")
+            decode = SURFACES.decoder(pixels)
             straight, _ = decode(channels.straight(values))
-            codes = {warning.code for warning in space_warnings(image, SENSOR)}
+            codes = {warning.code for warning in SURFACES.warnings(image)}
     error = largest_error(light, drawn.light, drawn.light)
     clipped = largest_error(straight, np.clip(drawn.straight, 0, 1), drawn.straight)
     findings = []

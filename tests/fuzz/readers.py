@@ -16,7 +16,6 @@ from typing import Any
 
 import numpy as np
 from PIL import Image, ImageCms
-from uplift_cli.colours import ColourSource
 
 from tests.atlas.vendor_files import VENDORS, Files, sample
 from tests.cube.cube_files import forge, header_length, with_header, with_header_length
@@ -33,15 +32,17 @@ from uplift.common.files import file_digest
 from uplift.cube.data import CubeData
 from uplift.cube.file import read, summarise
 from uplift.cube.schema import POINTS
+from uplift.extras.colour.colour_source import ColourSource
 from uplift.extras.colour.query import query
-from uplift.extras.palette.design import design, matrix
-from uplift.extras.palette.factor import standard_model
-from uplift.extras.palette.spec import read_palette
+from uplift.extras.images.converter import ImageConverter, RowConverter
+from uplift.extras.images.counts import Counts
+from uplift.extras.images.reader import SurfaceReader
+from uplift.extras.papers.palette.design import design, matrix
+from uplift.extras.papers.palette.factor import standard_model
+from uplift.extras.papers.palette.spec import read_palette
 from uplift.extras.report.rebuild import recorded_atlas
 from uplift.extras.scene.plan.files import FORMAT, read_plan, read_scene_file
-from uplift.extras.texture.colours import Counts
 from uplift.extras.texture.conversion import convert
-from uplift.extras.texture.uplifter import Converter
 from uplift.lab.chart.recommendation import Requirement, recommend_cube
 from uplift.lab.chart.results import criteria, read_chart
 from uplift.lattice.lattice import Lattice
@@ -178,8 +179,7 @@ def use_chart(path: Path) -> None:
     """Compute what pictures of the chart show, and recommend a cube."""
     chart = read_chart(path)
     for criterion in chain.from_iterable(criteria(batch) for batch in chart.batches):
-        for result in criterion.front(chart.measured):
-            criterion.labels(result)
+        criterion.front(chart.measured)
     recommend_cube(chart, Requirement(time_ns=1e5))
 
 
@@ -431,13 +431,6 @@ def change_content(
 # --- images ---
 
 
-class _Same(Converter):
-    """Conversion of each colour to itself."""
-
-    def convert(self, rgb):  # type: ignore[no-untyped-def]
-        return (rgb,), Counts()
-
-
 @functools.cache
 def _images() -> Seeds:
     codes = np.random.default_rng(0).integers(0, 256, (6, 7, 4), dtype=np.uint8)
@@ -481,12 +474,14 @@ def _images() -> Seeds:
 
 def use_image(path: Path) -> None:
     """Convert to a texture."""
+    same = RowConverter(
+        reader=SurfaceReader(sensor=observer.sensor()),
+        depth="half",
+        header={},
+        to_rows=ImageConverter(lambda band: ((band.rgb,), Counts())),
+    )
     with tempfile.TemporaryDirectory(dir=path.parent) as out:
-        convert(
-            _Same(observer.sensor(), "half", "auto", "clip", (), {}),
-            path,
-            Path(out) / "out.exr",
-        )
+        convert(same, path, Path(out) / "out.exr")
 
 
 def with_sources(path: Path) -> Path:

@@ -9,8 +9,7 @@ from numpy.testing import assert_array_equal
 from tests.lab.conftest import grey
 from uplift.atlas.sources import read_atlas
 from uplift.colorimetry.delta_e import delta_e_spectra
-from uplift.fit.families import families_with
-from uplift.lab.look_alikes import families_like
+from uplift.lab.look_alikes import families_like, families_with
 from uplift.lab.method import PreparedMethod
 from uplift.lab.runner import (
     Errors,

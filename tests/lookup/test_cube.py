@@ -26,8 +26,8 @@ from uplift.common.errors import (
     UnknownNameError,
     UpliftError,
 )
+from uplift.extras.papers.wavelengths.sampling import make_setup
 from uplift.extras.photographs.samples import prepare_samples
-from uplift.extras.scene.wavelengths.sampling import make_setup
 from uplift.extras.texture.emission import prepare_lights
 from uplift.lookup.blocks import BLOCK
 from uplift.lookup.cube import DEFAULT, PACKAGED, TABULATED, find_file

@@ -1,5 +1,7 @@
 """Properties of every spectrum model."""
 
+from typing import get_args
+
 import jax
 import jax.numpy as jnp
 import numpy as np
@@ -12,9 +14,11 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 from tests.helpers import raises
 from uplift.common.errors import OptionError, UnknownNameError
+from uplift.extras.mitsuba.texels import GREY_WEIGHTS
 from uplift.models import registry
+from uplift.models.duality import blended_multipliers
 from uplift.models.model import evaluate
-from uplift.models.moments import WARPS, Moments, multipliers_of_rounded
+from uplift.models.moments import WARPS, Moments
 from uplift.models.registry import from_description
 from uplift.models.sigmoid import Sigmoid
 from uplift.pipeline import options
@@ -179,10 +183,10 @@ def test_moments_that_rounding_moved_outside_return():
     moments = model.to_storage([[0, 3e4, 0, -1e4, 0, 0, 0, 0, 0]])
     rounded = moments.astype(np.float16).astype(float)
     assert not model.try_from_storage(rounded)[1].all()
-    multipliers, valid = multipliers_of_rounded(model, rounded)
+    multipliers, valid = blended_multipliers(rounded, GREY_WEIGHTS)
     assert valid.all()
     assert_allclose(model.to_storage(multipliers), moments, rtol=0, atol=0.01)
 
 
 def test_builds_name_the_models_that_files_have():
-    assert set(registry.MODELS) == set(options.MODELS)
+    assert set(registry.MODELS) == set(get_args(options.ModelName))

@@ -1,7 +1,6 @@
 """Builds of the ColorChecker and without an atlas, in several sizes and both models."""
 
 import dataclasses
-import inspect
 import re
 
 import numpy as np
@@ -22,7 +21,7 @@ from uplift.colorimetry.delta_e import delta_e_rgb, delta_e_spectra
 from uplift.common.errors import AtlasError, OptionError, UnknownNameError
 from uplift.cube.file import digest
 from uplift.lattice.point_table import Status
-from uplift.pipeline.options import Options, check_memory
+from uplift.pipeline.options import OptionKeywords, Options, check_memory
 
 GRID = observer.grid()
 
@@ -246,10 +245,18 @@ def test_bad_options_are_refused_before_anything_is_fitted(
         uplift.build(MACBETH, **options)
 
 
-def test_defaults_of_build_are_those_of_the_recorded_options():
-    parameters = inspect.signature(uplift.build).parameters
-    for field in dataclasses.fields(Options):
-        assert parameters[field.name].default == field.default, field.name
+def test_keywords_of_build_are_the_options():
+    """Editors complete them, and `Options` has their defaults."""
+    names = [field.name for field in dataclasses.fields(Options)]
+    assert list(OptionKeywords.__annotations__) == names
+    both = (
+        uplift.build(dim=3, coefficients=5),
+        uplift.build(None, Options(dim=3, coefficients=5)),
+    )
+    assert digest(both[0].data) == digest(both[1].data)
+    assert uplift.build(None, Options(coefficients=5), dim=2).dim == 2
+    with pytest.raises(TypeError, match="dimm"):
+        uplift.build(dimm=3)  # type: ignore[call-arg]
 
 
 def test_the_dim_that_an_error_names_fits_into_free_memory(monkeypatch):

@@ -170,15 +170,6 @@ def expected_error(
     )
 
 
-def mahalanobis(covariance: Array, difference: Array) -> Array:
-    """Mahalanobis distances (n,) of differences (n, d) by covariances (n, d, d), which
-    may be singular.
-    """
-    values, axes = np.linalg.eigh(covariance)
-    along = np.einsum("nij,ni->nj", axes, difference)
-    return np.sqrt((along**2 / np.maximum(values, TINY)).sum(axis=1))
-
-
 def learn_radii(
     ratio: Array, coverage: Sequence[tuple[float, float]], components: int = 1
 ) -> list[float]:
@@ -210,13 +201,10 @@ def nearest_distances(lab: Array, locations: Array) -> Array:
     """
     if not len(locations):
         return np.full(len(lab), np.inf)
-    parts = blocks(len(lab), max(BLOCK_NUMBERS // len(locations), 1))
-    return np.concatenate(
-        [
-            np.zeros(0),
-            *(distances(lab[block], locations).min(axis=1) for block in parts),
-        ]
-    )
+    nearest = np.empty(len(lab))
+    for block in blocks(len(lab), max(BLOCK_NUMBERS // len(locations), 1)):
+        nearest[block] = distances(lab[block], locations).min(axis=1)
+    return nearest
 
 
 def familiar_distance(locations: Array) -> float:

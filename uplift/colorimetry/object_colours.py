@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from uplift.common.arrays import Array, Mask
+from uplift.common.arrays import Array, Mask, blocks
 
 SLACK = 1e-9
 """Distance from the solid, in linear RGB, that counts as rounding."""
@@ -33,16 +33,11 @@ class Solid:
         """Compute the largest signed distance (n,) of linear RGB (n, 3) from the
         facets: positive outside the solid.
         """
-        blocks = [rgb[first : first + BLOCK] for first in range(0, len(rgb), BLOCK)]
-        return np.concatenate(
-            [
-                np.zeros(0),
-                *(
-                    (block @ self.normals.T - self.offsets).max(axis=1)
-                    for block in blocks
-                ),
-            ]
-        )
+        distances = [np.zeros(0)]
+        for block in blocks(len(rgb), BLOCK):
+            apart = rgb[block] @ self.normals.T - self.offsets
+            distances.append(apart.max(axis=1))
+        return np.concatenate(distances)
 
     def contains(self, rgb: Array) -> Mask:
         """Test whether (n,) a reflectance with each linear RGB (n, 3) exists."""
@@ -53,18 +48,16 @@ class Solid:
         (n, 3) inside to a target.
         """
         fractions = [np.zeros(0)]
-        for first in range(0, len(target), BLOCK):
-            start = origin[first : first + BLOCK]
-            end = target[first : first + BLOCK]
+        for block in blocks(len(target), BLOCK):
+            start = origin[block]
+            end = target[block]
             # On start + f · (end − start), facet i is met at f = (offset_i − n_i ·
             # start) / n_i · (end − start).
             margin = np.maximum(self.offsets - start @ self.normals.T, 0)
             speed = (end - start) @ self.normals.T
-            fractions.append(
-                np.divide(
-                    margin, speed, out=np.ones_like(margin), where=speed > margin
-                ).min(axis=1)
-            )
+            fraction = np.ones_like(margin)
+            np.divide(margin, speed, out=fraction, where=speed > margin)
+            fractions.append(fraction.min(axis=1))
         return np.concatenate(fractions)
 
 
@@ -103,15 +96,3 @@ def solid(matrix: Array) -> Solid:
     along = normals @ matrix
     offsets = np.maximum(along, 0).sum(axis=1), np.maximum(-along, 0).sum(axis=1)
     return Solid(np.concatenate([normals, -normals]), np.concatenate(offsets))
-
-
-def solid_volume(matrix: Array) -> float:
-    """Compute the volume of the object-colour solid of three responses (3, N).
-
-    The zonotope consists of a parallelepiped for each triple of segments; each pair of
-    segments takes part in those of all third ones.
-    """
-    first, second = np.triu_indices(matrix.shape[1], k=1)
-    normals = np.cross(matrix.T[first], matrix.T[second])
-    blocks = [normals[start : start + BLOCK] for start in range(0, len(normals), BLOCK)]
-    return float(sum(np.abs(block @ matrix).sum() for block in blocks) / 3)

@@ -9,6 +9,7 @@ import hashlib
 import json
 import os
 from collections.abc import Callable, Mapping
+from functools import partial
 from pathlib import Path
 from typing import Any, NamedTuple, TypeVar
 
@@ -36,6 +37,12 @@ MAX_VALUE = 1e30
 """
 MAX_TEXT = 1000
 """Characters of a text."""
+
+FORGED = (
+    AttributeError, KeyError, MemoryError, OverflowError, TypeError, ValueError,
+    UpliftError,
+)  # fmt: skip
+"""Errors of content that no version has written."""
 
 Tensors = dict[str, NDArray[Any]]
 Content = TypeVar("Content")
@@ -112,46 +119,30 @@ def load(
     check_regular(
         path, CubeFileError, hint=f"check the name, or build the {kind.noun} first"
     )
-    again = f"build the {kind.noun} again"
+    damaged = partial(CubeFileError, path=path, hint=f"build the {kind.noun} again")
+    foreign = partial(damaged, code=kind.foreign)
     try:
         tensors, metadata = _read_tensors(path)
     except (SafetensorError, ValueError, TypeError, OSError, MemoryError) as error:
         got = _recognise_file(path)
         if not got or got.endswith(kind.noun):
             got = "a damaged or another file"
-        problem = f"must be an {kind.format}, got {got}"
-        raise CubeFileError(
-            problem, code=kind.foreign, path=path, hint=again
-        ) from error
+        raise foreign(f"must be an {kind.format}, got {got}") from error
     stated = metadata.get("format") if isinstance(metadata, dict) else None
     if stated != kind.format:
         got = "" if stated is None else f", got {format_value(stated)}"
-        raise CubeFileError(
-            f"must be an {kind.format}{got}", code=kind.foreign, path=path, hint=again
-        )
+        raise foreign(f"must be an {kind.format}{got}")
     _check_readable(metadata, kind, path)
     if metadata.pop("digest", None) != content_digest(tensors, metadata):
-        problem = "is damaged: the content does not match its digest"
-        raise CubeFileError(problem, path=path, hint=again)
+        raise damaged("is damaged: the content does not match its digest")
     # What follows is for files whose digest was forged.
     try:
         return decode(tensors, metadata)
-    except (
-        AttributeError,
-        KeyError,
-        MemoryError,
-        OverflowError,
-        TypeError,
-        ValueError,
-        UpliftError,
-    ) as error:
-        reason = (
-            error.problem
-            if isinstance(error, CubeFileError)
-            else f"{type(error).__name__}: {str(error)[:200]}"
-        )
-        problem = f"is not a valid {kind.noun}: {reason}"
-        raise CubeFileError(problem, path=path, hint=again) from error
+    except FORGED as error:
+        reason = f"{type(error).__name__}: {str(error)[:200]}"
+        if isinstance(error, CubeFileError):
+            reason = error.problem
+        raise damaged(f"is not a valid {kind.noun}: {reason}") from error
 
 
 def _read_tensors(path: Path) -> tuple[Tensors, Any]:
@@ -182,25 +173,24 @@ def _check_readable(metadata: dict[str, Any], kind: Kind, path: Path) -> None:
     """
     provenance = metadata.get("provenance")
     writer = provenance.get("uplift") if isinstance(provenance, dict) else None
-    version = (
-        f"version {printable(writer)[:40]} of uplift"
+    writer = (
+        f"version {printable(writer)[:40]}"
         if isinstance(writer, str)
-        else "the version of uplift"
+        else "the version"
     )
-    hint = f"build the {kind.noun} again, or use {version} that wrote it"
+    hint = f"build the {kind.noun} again, or use {writer} of uplift that wrote it"
+    unreadable = partial(CubeFileError, path=path, hint=hint)
     if metadata.get("version") not in kind.readable:
         versions = " or ".join(map(str, kind.readable))
-        version = format_value(metadata.get("version"))
-        problem = f"must have format version {versions}, got {version}"
-        raise CubeFileError(problem, code="cube-version", path=path, hint=hint)
+        got = format_value(metadata.get("version"))
+        problem = f"must have format version {versions}, got {got}"
+        raise unreadable(problem, code="cube-version")
     features = metadata.get("features")
     for feature in features if isinstance(features, list) else ():
         if isinstance(feature, str) and feature not in kind.features:
-            problem = (
-                f"features must be of {', '.join(kind.features) or 'none'}, got "
-                f"{format_value(feature)}"
-            )
-            raise CubeFileError(problem, code="cube-feature", path=path, hint=hint)
+            known = ", ".join(kind.features) or "none"
+            problem = f"features must be of {known}, got {format_value(feature)}"
+            raise unreadable(problem, code="cube-feature")
 
 
 def content_digest(tensors: Tensors, metadata: Mapping[str, Any]) -> str:
@@ -242,7 +232,7 @@ def check_wavelengths(nm: NDArray[Any]) -> None:
 
 
 def check_arrays(
-    tensors: Tensors, schema: Mapping[str, Stored], sizes: Mapping[str, int]
+    tensors: Tensors, schema: Mapping[str, Stored], sizes: Mapping[str, Any]
 ) -> None:
     """Check presence, type, shape and range of all arrays as stored, before anything is
     computed from them.
@@ -250,16 +240,12 @@ def check_arrays(
     ``sizes`` has the lengths that the letters of shapes stand for; other letters are
     numbers.
     """
-    for name, stored in schema.items():
+    for name, (axes, types, low, high, _) in schema.items():
         require(name in tensors, f"has no array {name}")
         array = tensors[name]
-        low = stored.low
-        high = stored.high
-        shape = tuple(
-            sizes[axis] if axis in sizes else int(axis) for axis in stored.shape.split()
-        )
-        fits = array.shape == shape and array.dtype.name in stored.types
-        require(fits, f"{name} must be {' or '.join(stored.types)} of shape {shape}")
+        shape = tuple(int(sizes.get(axis, axis)) for axis in axes.split())
+        fits = array.shape == shape and array.dtype.name in types
+        require(fits, f"{name} must be {' or '.join(types)} of shape {shape}")
         # NaN fails both comparisons.
         in_range = bool(((array >= low) & (array <= high)).all())
         require(in_range, f"{name} must have numbers in [{low:g}, {high:g}]")
@@ -274,47 +260,37 @@ def check_metadata(value: Any, schema: Any, path: str = "metadata") -> None:
     key, with ``?`` after optional keys and ``*`` for all others. None is for any value.
     Every query reads metadata, and pydantic takes long to import.
     """
+    kind = type(value)
+    items: dict[str, tuple[Any, Any]] = {}
     if schema is None:
         return
-    fits, expected = _fits(value, schema)
+    if schema is str:
+        fits = kind is str and len(value) <= MAX_TEXT
+        expected = f"text of at most {MAX_TEXT} characters"
+    elif schema is int:
+        fits = kind is int and 0 <= value <= MAX_VALUE
+        expected = "a whole number from 0"
+    elif isinstance(schema, tuple):
+        low, high = schema
+        fits = kind in (int, float) and low <= value <= high
+        expected = f"a number in [{low:g}, {high:g}]"
+    elif isinstance(schema, list):
+        item, limit = schema
+        fits = kind is list and len(value) <= limit
+        expected = f"a list of at most {limit:,} items"
+        if fits:
+            items = {f"[{number}]": (each, item) for number, each in enumerate(value)}
+    else:
+        known = {key.removesuffix("?"): item for key, item in schema.items()}
+        required = known.keys() & schema.keys() - {"*"}
+        fits = kind is dict and required <= value.keys()
+        fits = fits and ("*" in schema or value.keys() <= known.keys())
+        expected = f"a table of {', '.join(schema)}"
+        if fits:
+            items = {
+                f".{key}": (value[key], known[key]) for key in value.keys() & known
+            }
     if not fits:
         raise CubeFileError(f"{path} must be {expected}, got {format_value(value)}")
-    if isinstance(schema, list):
-        for number, item in enumerate(value):
-            check_metadata(item, schema[0], f"{path}[{number}]")
-    elif isinstance(schema, dict):
-        for key, item_schema in _fields(schema).items():
-            if key in value:
-                check_metadata(value[key], item_schema, f"{path}.{key}")
-
-
-def _fits(value: Any, schema: Any) -> tuple[bool, str]:
-    """Whether a value, apart from its items, fits a schema, and the values that do."""
-    if schema is str:
-        fits = isinstance(value, str) and len(value) <= MAX_TEXT
-        return fits, f"text of at most {MAX_TEXT} characters"
-    if schema is int:
-        fits = type(value) is int and 0 <= value <= MAX_VALUE
-        return fits, "a whole number from 0"
-    if isinstance(schema, tuple):
-        low, high = schema
-        fits = type(value) in (int, float) and low <= value <= high
-        return fits, f"a number in [{low:g}, {high:g}]"
-    if isinstance(schema, list):
-        limit = schema[1]
-        fits = isinstance(value, list) and len(value) <= limit
-        return fits, f"a list of at most {limit:,} items"
-    fits = isinstance(value, dict) and _has_fields(value, schema)
-    return fits, f"a table of {', '.join(schema)}"
-
-
-def _has_fields(value: dict[str, Any], schema: dict[str, Any]) -> bool:
-    """Whether a table has all required keys of a schema, and no unknown ones."""
-    fields = _fields(schema)
-    required = fields.keys() & schema.keys()
-    return required <= value.keys() and ("*" in schema or value.keys() <= fields.keys())
-
-
-def _fields(schema: dict[str, Any]) -> dict[str, Any]:
-    """The schemas of required and optional keys."""
-    return {key.removesuffix("?"): item for key, item in schema.items() if key != "*"}
+    for place, (each, item) in items.items():
+        check_metadata(each, item, path + place)

@@ -109,20 +109,14 @@ class AtlasTable:
         if (more := self.outside) is None:
             return self
 
-        def both(name: str) -> Array:
-            return np.concatenate([getattr(self, name), getattr(more, name)])
-
+        columns = ("rgb", "coefficients", "half_width", "error")
+        both: dict[str, Any] = {
+            name: np.concatenate([getattr(self, name), getattr(more, name)])
+            for name in columns
+        }
         stored = [table.spectra.coefficients for table in (self, more)]
         spectra = EntrySpectra(self.spectra.model, np.concatenate(stored))
-        names = (*self.names, *more.names)
-        return AtlasTable(
-            names,
-            both("rgb"),
-            both("coefficients"),
-            both("half_width"),
-            both("error"),
-            spectra,
-        )
+        return AtlasTable(names=(*self.names, *more.names), spectra=spectra, **both)
 
     def __repr__(self) -> str:
         return f"AtlasTable({pluralise(len(self.names), 'entry')})"
@@ -152,22 +146,16 @@ class CubeData:
 
     def __repr__(self) -> str:
         sensor = self.sensor
+        coefficients = pluralise(self.model.count, "coefficient")
+        entries = pluralise(len(self.atlas.names), "entry")
         entry_model = self.atlas.spectra.model
-        more = (
-            ""
-            if entry_model == self.model
-            else f" with {pluralise(entry_model.count, 'coefficient')}"
-        )
-        outside = (
-            ""
-            if self.atlas.outside is None
-            else f" and {len(self.atlas.outside.names)} outside"
-        )
+        if entry_model != self.model:
+            entries += f" with {pluralise(entry_model.count, 'coefficient')}"
+        if self.atlas.outside is not None:
+            entries += f" and {len(self.atlas.outside.names)} outside"
         return (
-            f"CubeData({self.model.name} with "
-            f"{pluralise(self.model.count, 'coefficient')}, dim {self.lattice.dim}, "
-            f"{sensor.space} under {sensor.illuminant}, "
-            f"{pluralise(len(self.atlas.names), 'entry')}{more}{outside})"
+            f"CubeData({self.model.name} with {coefficients}, dim {self.lattice.dim}, "
+            f"{sensor.space} under {sensor.illuminant}, {entries})"
         )
 
     @cached_property
@@ -219,11 +207,8 @@ class CubeData:
         """(n,) True for cells with eight present corners, by the number of the lowest.
         None if no node is absent.
         """
-        return (
-            None
-            if self.points.present.all()
-            else self.lattice.complete_cells(self.points.present)
-        )
+        present = self.points.present
+        return None if present.all() else self.lattice.complete_cells(present)
 
     @cached_property
     def inexact_cells(self) -> Mask | None:
@@ -240,11 +225,8 @@ class CubeData:
     @cached_property
     def inexact_corners(self) -> Mask | None:
         """(n,) True for the corners of `inexact_cells`. None without any."""
-        return (
-            None
-            if self.inexact_cells is None
-            else self.lattice.corner_points(self.inexact_cells)
-        )
+        cells = self.inexact_cells
+        return None if cells is None else self.lattice.corner_points(cells)
 
     def missing_points(self, rgb: Array | None = None) -> Indices:
         """Return the absent nodes that linear RGB (n, 3) need, or all absent nodes."""
@@ -278,12 +260,10 @@ def common_sensor(cubes: Iterable[CubeData]) -> Sensor:
     spaces = {(sensor.space, sensor.illuminant, sensor.observer) for sensor in sensors}
     if len(spaces) > 1:
         names = " and ".join(", ".join(space) for space in sorted(spaces))
-        raise OptionError(
-            (
-                "cubes that are used together must have one RGB space, illuminant and "
-                f"observer, got {names}"
-            ),
-            code="cubes-of-different-spaces",
-            hint="build the cube with the settings of the other",
+        problem = (
+            "cubes that are used together must have one RGB space, illuminant and "
+            f"observer, got {names}"
         )
+        hint = "build the cube with the settings of the other"
+        raise OptionError(problem, code="cubes-of-different-spaces", hint=hint)
     return sensors[0]

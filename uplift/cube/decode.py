@@ -89,12 +89,12 @@ def _models(metadata: dict[str, Any]) -> tuple[Model, Model]:
 
 def _schema(features: list[str], is_shared: bool) -> dict[str, Stored]:
     """Return the arrays of a file, where nodes and entries may share one model."""
-    schema = {}
-    for name, stored in ARRAYS.items():
-        is_repeated = is_shared and name.endswith(ENTRY_COEFFICIENTS)
-        if stored.feature in ("", *features) and not is_repeated:
-            schema[name] = stored
-    return schema
+    return {
+        name: stored
+        for name, stored in ARRAYS.items()
+        if stored.feature in ("", *features)
+        and not (is_shared and name.endswith(ENTRY_COEFFICIENTS))
+    }
 
 
 def _sizes(
@@ -171,36 +171,33 @@ def _check(data: CubeData) -> None:
     sensor = data.sensor
     nodes = data.lattice.nodes
     check_wavelengths(sensor.wavelengths)
-    names = (*atlas.names, *(() if atlas.outside is None else atlas.outside.names))
+    names = atlas.names + (atlas.outside.names if atlas.outside else ())
     looks = tuple(look["name"] for look in data.provenance.get("looks", ()))
+    options = data.provenance.get("options", {})
     with np.errstate(all="ignore"):
         basis = data.model.basis(sensor.wavelengths)
         white = sensor.matrix.sum(axis=1)
-        regular = all(
-            map(
-                _has_three_channels,
-                (sensor.xyz_to_rgb, sensor.light.xyz, sensor.matrix),
-            )
-        )
-    has_basis = basis.shape == (len(sensor.wavelengths), data.model.count) and bool(
-        np.isfinite(basis).all()
-    )
-    options = data.provenance.get("options", {})
+        channels = (sensor.xyz_to_rgb, sensor.light.xyz, sensor.matrix)
+        regular = all(map(_has_three_channels, channels))
+    shape = (len(sensor.wavelengths), data.model.count)
     for condition_met, problem in (
         (len(set(names)) == len(names), "the names of entries must be unique"),
         (
-            looks == atlas.names[len(atlas.names) - atlas.looks :],
+            looks == atlas.names[atlas.measured_count :],
             "the looks must be the last entries, by their names",
         ),
         (
-            atlas.left_out is None or atlas.looks < len(atlas.names),
+            atlas.left_out is None or atlas.measured_count,
             "left-out spectra need entries",
         ),
         (
             all(map(_is_option, options.values())),
             "metadata.provenance.options must be text, numbers and names",
         ),
-        (has_basis, "the model must have a range of wavelengths"),
+        (
+            basis.shape == shape and np.isfinite(basis).all(),
+            "the model must have a range of wavelengths",
+        ),
         ((nodes[0], nodes[-1]) == (0, 1), "the nodes must run from 0 to 1"),
         (
             data.points.entry.max(initial=-1) < len(atlas.names),
@@ -231,9 +228,8 @@ def _is_option(value: Any) -> bool:
 
 def _has_three_channels(matrix: Array) -> bool:
     """Return whether the rows (3, …) of a matrix are independent of each other."""
-    return bool(np.isfinite(matrix).all()) and bool(
-        np.linalg.cond(matrix) < MAX_CONDITION
-    )
+    is_finite = bool(np.isfinite(matrix).all())
+    return is_finite and bool(np.linalg.cond(matrix) < MAX_CONDITION)
 
 
 def _expand(points: PointTable, numbers: Indices, lattice: Lattice) -> PointTable:
@@ -241,12 +237,11 @@ def _expand(points: PointTable, numbers: Indices, lattice: Lattice) -> PointTabl
     …).
     """
     size = lattice.size
-    valid = (
-        0 < len(numbers) < size <= MAX_POINTS
-        and bool((np.diff(numbers) > 0).all())
-        and bool(numbers[-1] < size)
+    valid = 0 < len(numbers) < size <= MAX_POINTS and numbers[-1] < size
+    valid = valid and (np.diff(numbers) > 0).all()
+    require(
+        bool(valid), "point numbers must ascend within the lattice, with some missing"
     )
-    require(valid, "point numbers must ascend within the lattice, with some missing")
     # A query needs all corners of a cell.
     low = numbers[(lattice.position(numbers) < lattice.dim - 1).all(axis=-1)]
     for corner in CORNERS:

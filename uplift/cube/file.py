@@ -111,17 +111,17 @@ def _stored_type(name: str, dtype: np.dtype[Any]) -> np.dtype[Any] | str:
 def _arrays(data: CubeData) -> dict[str, Any]:
     """Return the arrays by their names in the file; None for those that are missing."""
     arrays: dict[str, Any] = {"nodes": data.lattice.nodes}
-    for name in SENSOR:
-        arrays[f"sensor.{name}"] = getattr(data.sensor, name)
-    arrays["atlas.left_out"] = data.atlas.left_out
-    for name in POINTS:
-        arrays[name] = getattr(data.points, name)
+    for prefix, part, names in (
+        ("", data.points, POINTS),
+        ("sensor.", data.sensor, SENSOR),
+        ("families.", data.families, FAMILIES),
+    ):
+        for name in names:
+            arrays[prefix + name] = getattr(part, name, None)
     arrays |= _table_arrays("atlas", data.atlas, data.model)
+    arrays["atlas.left_out"] = data.atlas.left_out
     if data.atlas.outside is not None:
         arrays |= _table_arrays("outside", data.atlas.outside, data.model)
-    if data.families is not None:
-        for name in FAMILIES:
-            arrays[f"families.{name}"] = getattr(data.families, name)
     return arrays
 
 
@@ -129,15 +129,15 @@ def _table_arrays(prefix: str, table: AtlasTable, model: Model) -> dict[str, Any
     """Return the arrays of entries, whose spectra may be those in the model of
     nodes.
     """
-    is_shared = table.spectra.model == model
+    spectra = table.spectra
     return {
         f"{prefix}.rgb": table.rgb,
         f"{prefix}.coefficients": table.coefficients,
         f"{prefix}.reach": table.half_width,
         f"{prefix}.error": table.error,
-        f"{prefix}.{ENTRY_COEFFICIENTS}": None
-        if is_shared
-        else table.spectra.coefficients,
+        f"{prefix}.{ENTRY_COEFFICIENTS}": (
+            None if spectra.model == model else spectra.coefficients
+        ),
         f"{prefix}.measured": table.measured,
     }
 

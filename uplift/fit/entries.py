@@ -1,9 +1,7 @@
 """Fit of atlas entries: the measured spectrum, its colours under several lights, and
 exactly its RGB.
 
-docs/mathematics.md, 6. `Marquardt`, a solver of optimistix that is stepped in numpy,
-minimises the objective: nothing needs to be compiled for a few entries, and those that
-have converged leave the batch.
+docs/mathematics.md, 6.
 """
 
 from collections.abc import Sequence
@@ -15,15 +13,10 @@ import numpy as np
 
 from uplift.colorimetry.delta_e import delta_e_spectra, lab, lab_jacobian
 from uplift.colorimetry.sensor import Light
-from uplift.common.arrays import Array, Indices, Mask
+from uplift.common.arrays import Array, Indices
 from uplift.fit.problem import Problem
-from uplift.fit.solver import (
-    BatchSolver,
-    Options,
-    Stepped,
-    iterate_rows,
-    solve_in_numpy,
-)
+from uplift.fit.solver import solve_in_numpy
+from uplift.models.least_squares import least_squares
 from uplift.models.model import Model
 
 LIGHTS_WEIGHT = 0.03
@@ -43,12 +36,6 @@ FLATNESS = 1e-5
 lights constrain it.
 """
 MAX_STEPS = 256
-PRECISION = 1e-8
-"""Relative reduction of the objective and relative change of the multipliers at which a
-fit ends.
-"""
-FIRST_DAMPING = 1e-3
-"""Initial μ relative to the largest diagonal element of JᵀJ."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -158,99 +145,16 @@ def objective(
     return Objective(model, basis, values, xyz, whites, weight, multipliers)
 
 
-class MarquardtState(NamedTuple):
-    """State of n fits between steps."""
-
-    residual: Array
-    """(n, m)."""
-    damping: Array
-    """(n,) μ, 0 before the first step."""
-    growth: Array
-    """(n,) factor of μ after the next rejected step."""
-    done: Mask
-    """(n,) whether the fit has ended."""
-
-
-class Marquardt(BatchSolver):
-    """Levenberg and Marquardt's method for a batch of fits in numpy, with Nielsen's
-    damping.
-
-    The option ``normal_equations`` maps ``y`` (n, C) and the residuals f (n, m) to JᵀJ
-    and Jᵀf. Madsen, Nielsen & Tingleff 2004, "Methods for non-linear least squares
-    problems", section 3.2.
-    """
-
-    rtol: float = PRECISION
-    atol: float = 0.0
-
-    def init(
-        self, fn: Any, y: Any, args: Any, options: Options, *rest: Any
-    ) -> MarquardtState:
-        """Evaluate the residuals at ``y`` (n, C)."""
-        count = len(y)
-        return MarquardtState(
-            fn(y, args)[0],
-            np.zeros(count),
-            np.full(count, 2.0),
-            np.zeros(count, dtype=bool),
-        )
-
-    def step(
-        self,
-        fn: Any,
-        y: Any,
-        args: Any,
-        options: Options,
-        state: MarquardtState,
-        *rest: Any,
-    ) -> Stepped:
-        """Take one step in every fit that has not ended; no sum of squares
-        increases.
-        """
-        gram, slope = options["normal_equations"](y, state.residual)
-        diagonal = gram.diagonal(axis1=-2, axis2=-1).max(axis=-1)
-        damping = np.where(state.damping > 0, state.damping, FIRST_DAMPING * diagonal)
-        # (JᵀJ + μ I) Δy = −Jᵀ f
-        damped = gram + damping[:, None, None] * np.eye(y.shape[-1])
-        change = -np.linalg.solve(damped, slope[..., None])[..., 0]
-        trial = y + change
-        residual, aux = fn(trial, args)
-        before = (state.residual**2).sum(axis=-1)
-        after = (residual**2).sum(axis=-1)
-        # ϱ: the reduction of the squares over that of the linear model
-        expected = (change * (damping[:, None] * change - slope)).sum(axis=-1)
-        gain = (before - after) / np.maximum(expected, np.finfo(float).tiny)
-        better = gain > 0
-        size = np.linalg.norm(y, axis=-1)
-        small = np.linalg.norm(change, axis=-1) <= self.rtol * size
-        least = self.rtol * before
-        flat = better & (before - after <= least) & (expected <= least)
-        accept = (better & ~state.done)[:, None]
-        # Nielsen's damping: max(1/3, 1 − (2ϱ − 1)³) after an accepted step
-        shrinkage = np.maximum(1 / 3, 1 - (2 * gain - 1) ** 3)
-        state = MarquardtState(
-            residual=np.where(accept, residual, state.residual),
-            damping=damping * np.where(better, shrinkage, state.growth),
-            growth=np.where(better, 2.0, 2 * state.growth),
-            done=state.done | small | flat,
-        )
-        return np.where(accept, trial, y), state, aux
-
-    def done(self, state: MarquardtState) -> Mask:
-        return state.done
-
-
 def minimise(goal: Objective, measured: Array) -> Array:
     """Multipliers (E, C) that minimise the objective of measured reflectances (E, N),
     starting from grey.
     """
     colours = goal.colours(measured)
-    return iterate_rows(
-        Marquardt(),
-        lambda y, rows: (goal.residuals(y, measured[rows], colours[rows]), None),
+    return least_squares(
+        lambda y, rows: goal.residuals(y, measured[rows], colours[rows]),
+        lambda y, values, _: goal.normal_equations(y, values),
         np.zeros((len(measured), goal.model.count)),
-        lambda _: {"normal_equations": goal.normal_equations},
-        MAX_STEPS,
+        max_steps=MAX_STEPS,
     )
 
 
@@ -296,11 +200,8 @@ def fit_entries(
 
 def _errors(problem: Problem, multipliers: Array, measured: Array) -> Array:
     """ΔE00 (E,) between fitted and measured spectra under the light of the errors."""
-    spectra = np.asarray(
-        problem.model.to_reflectance(multipliers @ problem.forward.basis.T)
-    )
-    light = problem.error_light or problem.sensor.light
-    return delta_e_spectra(light, spectra, measured)
+    spectra = problem.model.to_reflectance(multipliers @ problem.forward.basis.T)
+    return delta_e_spectra(problem.light_of_errors, spectra, measured)
 
 
 def with_multipliers(
@@ -312,10 +213,3 @@ def with_multipliers(
     error = entries.error.copy()
     error[rows] = _errors(problem, multipliers, entries.measured[rows])
     return entries._replace(multipliers=changed, error=error)
-
-
-def join_entries(*parts: FittedEntries) -> FittedEntries:
-    """Put entries after one another."""
-    return FittedEntries(
-        *(np.concatenate(columns) for columns in zip(*parts, strict=True))
-    )

@@ -30,8 +30,6 @@ from uplift.fit.kriging import Kernel, Points
 
 FILE = "library.npz"
 """Package data, written by tools/ship_library.py."""
-SAME_RMS = 1e-3
-"""rms difference within which spectra are the same measurement."""
 STAND_IN = "otsu2018"
 """Family that stands for measurements of the Munsell book, which cannot be shipped."""
 STEPS = 10_000
@@ -91,23 +89,6 @@ def shipped_library(leave_out: Collection[str] = ()) -> tuple[Family, ...]:
         if name not in families:
             raise unknown_name(name, list(families), "library family")
     return tuple(family for family in families.values() if family.name not in leave_out)
-
-
-def families_with(measured: Array) -> tuple[str, ...]:
-    """Names of the shipped families that contain one of some spectra (n, 81), to leave
-    them out of tests on these.
-    """
-    from scipy.spatial import cKDTree
-
-    if not len(measured):
-        return ()
-    tree = cKDTree(measured)
-    limit = SAME_RMS * np.sqrt(measured.shape[1])
-    nearest = {
-        family.name: tree.query(family.measured)[0].min()
-        for family in shipped_library()
-    }
-    return tuple(name for name, distance in nearest.items() if distance <= limit)
 
 
 @dataclass(frozen=True, eq=False)

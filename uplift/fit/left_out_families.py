@@ -111,8 +111,9 @@ def _without_own(
 
 def family_errors(problem: Problem, left_out: LeftOut) -> ExpectedError:
     """Learn the expected squares of ΔE00 under the light of the errors."""
-    light = problem.error_light or problem.sensor.light
-    missed = delta_e_spectra(light, left_out.predicted, left_out.measured)
+    missed = delta_e_spectra(
+        problem.light_of_errors, left_out.predicted, left_out.measured
+    )
     locations = rgb_to_lab(problem.sensor, left_out.rgb)
     # No colour is answered with a material of another family: with it, nothing remains.
     remaining = np.zeros_like(missed)

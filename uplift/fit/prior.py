@@ -17,7 +17,7 @@ from uplift.common.arrays import Array, Mask, largest
 from uplift.fit.base import Base, learn_base
 from uplift.fit.entries import FittedEntries
 from uplift.fit.kernel_learning import MIN_ENTRIES, learn_kriging, visible_change
-from uplift.fit.kriging import DEFAULT, Kernel, Kriging, kernel_sums, krige
+from uplift.fit.kriging import Kernel, Kriging, kernel_sums, krige
 from uplift.fit.problem import Problem
 from uplift.lattice.lattice import Lattice
 from uplift.models.brightness import brightness
@@ -30,8 +30,6 @@ DETERMINED = Kernel(length=6.0, noise=1e-3)
 """Kernel where the colour alone determines the spectrum: it only chooses among
 solutions.
 """
-LOOK_VARIANCE = 0.01
-"""Variance of the noise of a look relative to that of entries."""
 FRACTIONS = np.multiply.accumulate(np.full(16, 0.7))
 """Parts of a deviation that are tried where all of it leaves the space of valid
 coefficients or is `STEEP`. The largest that does neither counts.
@@ -125,51 +123,18 @@ class Prior:
         if self.errors is None:
             return None
         # As many columns as kriging has, so that one program is compiled for both
-        used = self.errors.columns.shape[1]
-        columns = np.pad(self.errors.columns, ((0, 0), (0, self.model.count - used)))
+        errors = self.errors
+        used = errors.columns.shape[1]
+        columns = np.pad(errors.columns, ((0, 0), (0, self.model.count - used)))
+        lab = rgb_to_lab(self.sensor, rgb)
+        kernel = Kernel(LENGTH, 0.0)
         none = np.zeros(len(columns))
-        sums, nearest = kernel_sums(
-            rgb_to_lab(self.sensor, rgb),
-            self.errors.locations,
-            columns,
-            Kernel(LENGTH, 0.0),
-            none,
-        )
+        sums, nearest = kernel_sums(lab, errors.locations, columns, kernel, none)
         # Expected square v(x) Σ k e² / Σ k + f, and the learnt radius of 68 % in its
         # root
-        squares = (
-            self.errors.combine(sums[:, :used], np.exp(nearest / -LENGTH))[:, 0]
-            + self.errors.floor
-        )
-        standard, _ = self.errors.radii
-        return standard * np.sqrt(squares)
-
-    def with_entries(self, entries: FittedEntries, looks: int) -> "Prior":
-        """Return the prior of entries whose last ones are looks, with the same kernel
-        and standard errors.
-
-        Looks are nearly certain: see `LOOK_VARIANCE`.
-        """
-        measured = len(entries.rgb) - looks
-        # Of the same entries in any order, sums round alike.
-        order = np.lexsort([*entries.rgb.T, np.arange(len(entries.rgb)) >= measured])
-        deviations, _ = _deviations(self.model, self.base, entries.rows(order))
-        kernel = DEFAULT
-        variances = np.zeros(0)
-        trust = 1.0
-        if self.kriging is not None:
-            kernel = self.kriging.kernel
-            variances = self.kriging.variances
-            trust = self.kriging.trust
-        variances = np.append(variances, np.full(looks, LOOK_VARIANCE))
-        kriging, _ = krige(
-            rgb_to_lab(self.sensor, entries.rgb[order]), deviations, kernel, variances
-        )
-        surprise = self.surprise
-        if surprise is not None:
-            surprise = np.append(surprise, np.zeros(looks))
-        kriging = replace(kriging, trust=trust)
-        return replace(self, kriging=kriging, surprise=surprise)
+        spread = errors.combine(sums[:, :used], np.exp(nearest / -LENGTH))[:, 0]
+        standard, _ = errors.radii
+        return standard * np.sqrt(spread + errors.floor)
 
 
 def fit_prior(
@@ -191,7 +156,7 @@ def fit_prior(
     order = np.lexsort(entries.rgb.T)
     entries = entries.rows(order)
     locations = rgb_to_lab(sensor, entries.rgb)
-    deviations, expected = _deviations(model, base, entries)
+    deviations, expected = deviations_of(model, base, entries)
     if model.is_determined:
         kriging, errors = krige(locations, deviations, DETERMINED)
     else:
@@ -205,26 +170,27 @@ def fit_prior(
     start = _bounded(model, expected, brightness(entries.rgb) * (deviations - errors))
     left_out = problem.solve(entries.rgb, start, MAX_PASSES).multipliers
     spectra = evaluate(model, left_out, sensor.wavelengths)
-    missed = delta_e_spectra(
-        problem.error_light or problem.sensor.light, spectra, entries.measured
-    )
-    expected_errors = expected_error(locations, missed, entries.error)
-    changes = [
-        delta_e_spectra(lit, spectra, entries.measured) for lit in problem.lights
-    ]
+    missed = delta_e_spectra(problem.light_of_errors, spectra, entries.measured)
     back = np.argsort(order)
+    surprise = None
+    if problem.lights:
+        changes = [
+            delta_e_spectra(light, spectra, entries.measured)
+            for light in problem.lights
+        ]
+        surprise = np.max(changes, axis=0)[back]
     return Prior(
         model,
         sensor,
         base,
         kriging,
-        expected_errors,
-        spectra[back],
-        surprise=np.max(changes, axis=0)[back] if changes else None,
+        errors=expected_error(locations, missed, entries.error),
+        left_out=spectra[back],
+        surprise=surprise,
     )
 
 
-def _deviations(
+def deviations_of(
     model: Model, base: Base, entries: FittedEntries
 ) -> tuple[Array, Array]:
     """Deviations d_i = (c_i − s(x_i)) / k(x_i) (E, C), relative to the brightening as

@@ -47,6 +47,11 @@ class Problem:
         return forward_map(self.model, self.sensor.wavelengths, self.sensor.matrix)
 
     @property
+    def light_of_errors(self) -> Light:
+        """Light under which errors are learnt and stored."""
+        return self.error_light or self.sensor.light
+
+    @property
     def tolerance(self) -> float:
         """Residual at which solvers stop: the last steps converge quadratically and
         cost little.

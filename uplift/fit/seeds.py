@@ -174,21 +174,17 @@ def initial_guess(
 
 
 def lattice_error(
-    problem: Problem,
-    lattice: Lattice,
-    prior: Prior,
-    blend: Blend,
-    entries: FittedEntries,
+    problem: Problem, lattice: Lattice, prior: Prior, entries: FittedEntries
 ) -> Array:
     """Largest ΔE00 (E,) under the lights between each entry's fitted spectrum and the
-    lattice at its colour.
+    lattice at its colour, if nodes start from the entries alone.
 
     Only the corners of the entries' cells are fitted. Entry boxes are not used.
     """
     seeds = seed(lattice, entries.rgb)
     points = np.sort(seeds.points)
     target = lattice.target(points)
-    start = initial_guess(points, target, prior, seeds, entries.multipliers, blend)
+    start = initial_guess(points, target, prior, seeds, entries.multipliers, full_entry)
     fitted = problem.solve(target, start, MAX_PASSES, prior=start).multipliers
     wavelengths = problem.sensor.wavelengths
     spectra = evaluate(problem.model, fitted, wavelengths)
@@ -201,11 +197,7 @@ def lattice_error(
 
 
 def choose_lattice(
-    problem: Problem,
-    prior: Prior,
-    blend: Blend,
-    entries: FittedEntries,
-    max_error: float,
+    problem: Problem, prior: Prior, entries: FittedEntries, max_error: float
 ) -> tuple[str, int, int]:
     """Choose the smallest lattice that keeps every entry within ``max_error`` or, if
     none does, keeps the most.
@@ -217,7 +209,7 @@ def choose_lattice(
     for dim in DIMS:
         for axis in AXES:
             lattice = Lattice(axis_nodes(axis, dim))
-            errors = lattice_error(problem, lattice, prior, blend, entries)
+            errors = lattice_error(problem, lattice, prior, entries)
             trials.append((int((errors > max_error).sum()), dim, axis))
         lost, dim, axis = min(trials, key=lambda trial: trial[:2])
         if not lost:

@@ -20,7 +20,7 @@ import numpy as np
 import optimistix
 from numpy.typing import NDArray
 
-from uplift.common.arrays import Array, Indices, blocks, largest
+from uplift.common.arrays import Array, blocks, largest
 from uplift.common.compilation import compiled
 from uplift.fit.batch import map_batches
 from uplift.models.arithmetic import blocked_matmul
@@ -339,46 +339,29 @@ def iterate(
     return y, equinox.combine(arrays, static), count
 
 
-def iterate_rows(
-    solver: BatchSolver,
-    fn: Callable[[Array, Indices], tuple[Array, None]],
-    start: Array,
-    options: Callable[[slice], Options],
-    max_steps: int,
-) -> Array:
-    """Step a batch solver in numpy from ``start`` (n, C), in blocks of rows; those that
-    are done leave their block.
-
-    Nothing is compiled, which pays for a few problems. ``fn`` maps ``y`` and the
-    numbers of its rows to residuals.
-    """
-    y = start.copy()
-    for block in blocks(len(y), NUMPY_ROWS):
-        rows = np.arange(block.start, block.stop)
-        state = solver.init(fn, y[rows], rows, options(block), None, None, NO_TAGS)
-        for _ in range(max_steps):
-            y[rows], state, _ = solver.step(
-                fn, y[rows], rows, options(block), state, NO_TAGS
-            )
-            kept = ~solver.done(state)
-            rows = rows[kept]
-            state = jax.tree.map(lambda values, kept=kept: values[kept], state)
-            if not rows.size:
-                break
-    return y
-
-
 def solve_in_numpy(
     forward: ForwardMap, start: Array, target: Array, tolerance: float, max_steps: int
 ) -> Array:
     """Find multipliers (n, C) of linear RGB (n, 3) by minimum-norm steps from ``start``
-    (n, C), without compiling.
+    (n, C), in blocks of rows; those that are solved leave their block.
+
+    Nothing is compiled, which pays for a few problems.
     """
 
-    return iterate_rows(
-        LeastChange(forward, tolerance),
-        lambda y, rows: (forward.residual(y, target[rows]), None),
-        start,
-        lambda block: LeastChange.options(start[block], None),
-        max_steps,
-    )
+    def residual(y: Array, goal: Array) -> tuple[Array, None]:
+        return forward.residual(y, goal), None
+
+    solver = LeastChange(forward, tolerance)
+    y = start.copy()
+    for block in blocks(len(y), NUMPY_ROWS):
+        rows = np.arange(block.start, block.stop)
+        options = LeastChange.options(y[block], None)
+        state = solver.init(residual, y[rows], target[rows], options)
+        for _ in range(max_steps):
+            y[rows], state, _ = solver.step(residual, y[rows], target[rows], {}, state)
+            kept = ~solver.done(state)
+            rows = rows[kept]
+            state = LeastChangeState(*(array[kept] for array in state))
+            if not rows.size:
+                break
+    return y

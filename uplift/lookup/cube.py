@@ -211,9 +211,8 @@ class Cube:
         kind = blocks.as_float_type(dtype)
         count = blocks.as_thread_count(threads)
         function: blocks.Function = partial(MODES[mode], self.data, wavelengths=at)
-        if mode in TABULATED and self._is_table_worthwhile(
-            colours, len(at) * kind.itemsize
-        ):
+        row_bytes = len(at) * kind.itemsize
+        if mode in TABULATED and self._is_table_worthwhile(colours, row_bytes):
             from uplift.lookup.node_table import tabulate
 
             function = getattr(tabulate(self.data, at, kind, count), mode)
@@ -223,11 +222,9 @@ class Cube:
         """Whether to compute the spectra of all nodes once, instead of repeatedly per
         block.
         """
-        points = self.data.points.present
-        return bool(
-            points.size * row_bytes <= MAX_TABLE_BYTES
-            and colours.size // 3 >= np.count_nonzero(points)
-        )
+        present = self.data.points.present
+        fits = present.size * row_bytes <= MAX_TABLE_BYTES
+        return fits and bool(colours.size // 3 >= np.count_nonzero(present))
 
     def covers(self, rgb: ArrayLike) -> Mask:
         """Test whether the cube can answer colours in [0, 1]: all of them, unless it
@@ -246,9 +243,8 @@ class Cube:
         colours = blocks.as_colours(rgb, self.data.sensor)
         if self.data.complete_cells is None:
             return np.ones(colours.shape[:-1], dtype=bool)
-        return self.data.complete_cells[
-            self.data.entry_boxes.cell(colours.reshape(-1, 3))
-        ].reshape(colours.shape[:-1])
+        cells = self.data.entry_boxes.cell(colours.reshape(-1, 3))
+        return self.data.complete_cells[cells].reshape(colours.shape[:-1])
 
     def fill_missing(
         self,
@@ -275,22 +271,17 @@ class Cube:
         Cube
             The filled cube; this cube if no node is missing.
         """
-        from uplift.lookup.outside import fill_missing
+        from uplift.lookup.missing_nodes import fill_missing
 
-        colours = (
-            None
-            if rgb is None
-            else blocks.as_colours(rgb, self.data.sensor).reshape(-1, 3)
-        )
+        colours = None
+        if rgb is not None:
+            colours = blocks.as_colours(rgb, self.data.sensor).reshape(-1, 3)
         points = self.data.missing_points(colours)
         if not points.size:
             return self
-        source = load() if other is None else other
-        return Cube(
-            fill_missing(
-                self.data, points, source.data, blocks.as_thread_count(threads)
-            )
-        )
+        source = (load() if other is None else other).data
+        count = blocks.as_thread_count(threads)
+        return Cube(fill_missing(self.data, points, source, count))
 
     def standard_error(
         self, rgb: ArrayLike, light: Illuminant | Light | None = None
@@ -359,9 +350,10 @@ class Cube:
         """
         from uplift.colorimetry.likely_errors import nearest_distances
 
-        colours = rgb_to_lab(self.data.sensor, blocks.as_colours(rgb, self.data.sensor))
-        distances = nearest_distances(colours.reshape(-1, 3), self.data.evidence_lab)
-        return (distances > self.data.familiar_distance).reshape(colours.shape[:-1])
+        data = self.data
+        lab = rgb_to_lab(data.sensor, blocks.as_colours(rgb, data.sensor))
+        distances = nearest_distances(lab.reshape(-1, 3), data.evidence_lab)
+        return (distances > data.familiar_distance).reshape(lab.shape[:-1])
 
     def decode(self, codes: ArrayLike) -> Array:
         """Convert 8-bit codes to linear RGB, by the encoding of the RGB space.
@@ -391,9 +383,8 @@ class Cube:
         ndarray, shape (...)
             Codes from 0 to 255, with fractions.
         """
-        return np.interp(
-            as_array(rgb, ColourError), self.data.sensor.decoding, np.arange(256)
-        )
+        linear = as_array(rgb, ColourError)
+        return np.interp(linear, self.data.sensor.decoding, np.arange(256))
 
     def save(self, path: str | os.PathLike[str], *, force: bool = False) -> None:
         """Write the cube file, atomically.
@@ -442,12 +433,11 @@ def expected_errors(
         return None
     from uplift.lookup.errors_under_lights import as_light, light_errors, limited
 
-    lit = None if light is None else as_light(data, light)
-    if lit is None or lit.name == data.error_illuminant:
+    lit = data.error_illuminant if light is None else as_light(data, light)
+    if isinstance(lit, str) or lit.name == data.error_illuminant:
 
         def function(rgb: Array) -> Array:
-            errors = node_errors(data, rgb)
-            return limited(data, lit or data.error_illuminant, rgb, errors)
+            return limited(data, lit, rgb, node_errors(data, rgb))
 
     else:
         function = light_errors(data, lit)

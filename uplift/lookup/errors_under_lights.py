@@ -118,17 +118,20 @@ def evidence(data: CubeData) -> Evidence:
     small; `OptionError` without either.
     """
     atlas = data.atlas
+    families = data.families
     if atlas.measured is not None and atlas.left_out is not None:
-        at = data.sensor.wavelengths
-        rows = np.arange(len(atlas.measured))
-        kept = reflectance(data.model, atlas.coefficients[rows], at)
+        stored = atlas.coefficients[: len(atlas.measured)]
+        kept = reflectance(data.model, stored, data.sensor.wavelengths)
         return Evidence(data.evidence_lab, atlas.measured, atlas.left_out, kept, None)
-    if data.families is not None:
+    if families is not None:
         # No answer knows these materials: with all of them, nothing remains.
-        measured = data.families.measured
-        predicted = data.families.predicted
-        family = data.families.family
-        return Evidence(data.evidence_lab, measured, predicted, measured, family)
+        return Evidence(
+            data.evidence_lab,
+            families.measured,
+            families.predicted,
+            kept=families.measured,
+            family=families.family,
+        )
     raise OptionError(
         "standard errors under a light need a cube with left-out materials",
         code="too-few-entries",
@@ -144,29 +147,11 @@ def light_errors(data: CubeData, light: Light) -> LightErrors:
 def errors_from(data: CubeData, light: Light, known: Evidence) -> LightErrors:
     """Learn the standard errors under a light from evidence."""
     expected = known.expected_error(light)
-    entries = np.tile(
-        np.array(expected.radii) * np.sqrt(expected.floor), (len(data.atlas.names), 1)
-    )
-    if data.atlas.measured is not None:
-        at = data.sensor.wavelengths
-        rows = np.arange(len(data.atlas.measured))
-        spectra = data.atlas.spectra.reflectance(rows, at)
-        entries[rows] = delta_e_spectra(light, spectra, data.atlas.measured)[:, None]
+    remaining = np.array(expected.radii) * np.sqrt(expected.floor)
+    entries = np.tile(remaining, (len(data.atlas.names), 1))
+    measured = data.atlas.measured
+    if measured is not None:
+        rows = np.arange(len(measured))
+        spectra = data.atlas.spectra.reflectance(rows, data.sensor.wavelengths)
+        entries[rows] = delta_e_spectra(light, spectra, measured)[:, None]
     return LightErrors(data, light, expected, entries)
-
-
-def outside_errors(data: CubeData, light: Light | None) -> Array:
-    """ΔE00 (O,) between stored and measured spectrum of the entries outside the RGB
-    space, NaN if it is not known.
-    """
-    table = data.atlas.outside
-    if table is None:
-        return np.zeros(0)
-    if light is None or light.name == data.error_illuminant:
-        return table.error
-    if table.measured is None:
-        return np.full(len(table.names), np.nan)
-    stored = table.spectra.reflectance(
-        np.arange(len(table.names)), data.sensor.wavelengths
-    )
-    return delta_e_spectra(light, stored, table.measured)

@@ -29,7 +29,8 @@ from uplift.common.arrays import Array, Mask
 from uplift.common.errors import ColourError
 from uplift.cube.data import CubeData
 from uplift.lattice.entry_boxes import Nodes
-from uplift.lattice.lattice import weighted_sum
+from uplift.lattice.lattice import Lattice, weighted_sum
+from uplift.lattice.point_table import PointTable
 from uplift.lookup.refine import refine_to_rgb, with_colours
 from uplift.models.model import Model, evaluate, reflectance
 
@@ -159,13 +160,15 @@ def nearest(data: CubeData, rgb: Array, wavelengths: Array) -> Array:
     return values
 
 
-def lattice_spectra(data: CubeData, rgb: Array, wavelengths: Array) -> Array:
-    """Reflectance (n, N) as weighted spectra of the lattice alone, without
-    entry boxes.
+def lattice_spectra(
+    model: Model, lattice: Lattice, points: PointTable, rgb: Array, wavelengths: Array
+) -> Array:
+    """Reflectance (n, N) as weighted spectra of a lattice alone, without entry
+    boxes.
     """
-    corners, weights = data.lattice.corners(rgb)
-    points, row = np.unique(corners, return_inverse=True)
-    values = reflectance(data.model, data.points.coefficients[points], wavelengths)
+    corners, weights = lattice.corners(rgb)
+    nodes, row = np.unique(corners, return_inverse=True)
+    values = reflectance(model, points.coefficients[nodes], wavelengths)
     return weighted_sum(values, row.reshape(corners.shape), weights)
 
 

@@ -86,8 +86,10 @@ def prepare_products(
     """
     # (Σ w g) Mᵀ = Σ w (g Mᵀ): interpolation is linear, and is faster of fewer numbers.
     table = tabulate(data, wavelengths, np.float32, threads)
-    lattice = (table.lattice @ matrix.T).astype(np.float32)
-    atlas = (table.atlas @ matrix.T).astype(np.float32)
+    lattice, atlas = (
+        (values @ matrix.T).astype(np.float32)
+        for values in (table.lattice, table.atlas)
+    )
     exact = table.exact and partial(_product, table.exact, matrix)
     products = NodeTable(data, lattice, atlas, exact)
     return partial(_sample, products, threads)
@@ -102,9 +104,8 @@ def _sample(table: NodeTable, threads: int, rgb: ArrayLike) -> Values:
     def work(rows: Array) -> Values:
         return table.values(as_colours(rows, table.data.sensor))
 
-    return blockwise(
-        work, as_rgb(rgb), table.lattice.shape[1], table.lattice.dtype, threads
-    )
+    width = table.lattice.shape[1]
+    return blockwise(work, as_rgb(rgb), width, np.float32, threads)
 
 
 def tabulate(

@@ -32,10 +32,6 @@ MAX_SAFE_LINEAR = 30.0
 """Bound of the linear part up to which single precision keeps colours
 (tests/models/test_models.py): reflectances from .01 to .99.
 """
-GREY_SHARES = (1e-8, 1e-6, 1e-4, 1e-3, 1e-2)
-"""Weights of grey that rounded moments are mixed with, in turn, until they are those of
-a reflectance.
-"""
 MATCH_NODES = 1024
 """Nodes of the integrals from reflectances to moments."""
 
@@ -216,20 +212,3 @@ def moment_matrix(model: Moments, wavelengths: Array) -> Array:
     weights = duality.cosine_basis(phase, model.count) / MATCH_NODES
     weights[:, 1:] /= 2
     return samples @ weights
-
-
-def multipliers_of_rounded(model: Moments, moments: Array) -> tuple[Array, Mask]:
-    """Return multipliers (n, C) of moments (n, C) that were rounded or filtered, and
-    their validity (n,).
-
-    Rounding can move moments of saturated colours out of the moment space. They are
-    mixed with the least of `GREY_SHARES` of grey that returns them; where none does,
-    they are not valid.
-    """
-    multipliers, valid = model.try_from_storage(moments)
-    for share in GREY_SHARES:
-        if valid.all():
-            break
-        mixed = (1 - share) * moments[~valid] + share * np.eye(model.count)[0] / 2
-        multipliers[~valid], valid[~valid] = model.try_from_storage(mixed)
-    return multipliers, valid

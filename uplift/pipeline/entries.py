@@ -5,7 +5,7 @@ warnings of those not used.
 import os
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -54,14 +54,28 @@ class Spectra:
     libraries: tuple[tuple[Source, Atlas], ...]
     """Libraries of the user, and their files."""
     families: tuple[Family, ...]
-    """Families that the prior learns from."""
-    known: tuple[Family, ...]
     """Families of the shipped library, and of the user's."""
     atlas: Atlas
     measured: MeasuredEntries
     """Entries in the RGB space."""
     outside: MeasuredEntries
     """Entries outside the RGB space."""
+
+    def describe(self) -> dict[str, Any]:
+        """Return the provenance of the spectra, in JSON values."""
+        return {
+            "atlases": [
+                {**_describe(source), **source.changed_options()}
+                for source in self.atlas.sources
+            ],
+            "left_out": list(self.outside.names),
+            "skipped": [entry.name for entry in self.atlas.skipped],
+            "libraries": [_describe(source) for source, _ in self.libraries],
+        }
+
+
+def _describe(source: Source) -> dict[str, str]:
+    return {"name": source.name, "digest": source.digest}
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,52 +90,48 @@ class Constraints:
     at_entries: FittedEntries
     looks: int = 0
 
-    def truncated(self, model: Model) -> Array:
-        """Multipliers (E, C) of the spectra of entries with the coefficients of nodes.
-
-        Fewer moments of the same spectrum are the first of them (Tódová 2020, section
-        3.1.3).
-        """
-        if self.at_entries is self.at_nodes or not len(self.names):
-            return self.at_nodes.multipliers
-        stored = self.entry_model.to_storage(
-            self.at_entries.multipliers
-        )  # c_j = (1/π) ∫ g cos jφ dφ for any count
-        return model.from_storage(stored[:, : model.count])
+    @property
+    def has_more(self) -> bool:
+        """Whether entries have more coefficients than nodes."""
+        return self.at_entries is not self.at_nodes and len(self.names) > 0
 
     @property
     def measured_count(self) -> int:
         """Number of entries without the looks."""
         return len(self.names) - self.looks
 
-    def reflectance(self, problem: Problem, rows: Indices) -> Array:
-        """Spectra (k, N) that entries answer."""
-        spectra = self.table(problem.model, np.zeros(len(self.names)), None).spectra
-        return spectra.reflectance(rows, problem.sensor.wavelengths)
+    def truncated(self, model: Model) -> Array:
+        """Multipliers (E, C) of the spectra of entries with the coefficients of nodes.
+
+        Fewer moments of the same spectrum are the first of them (Tódová 2020, section
+        3.1.3).
+        """
+        if not self.has_more:
+            return self.at_nodes.multipliers
+        # c_j = (1/π) ∫ g cos jφ dφ for any count
+        stored = self.entry_model.to_storage(self.at_entries.multipliers)
+        return model.from_storage(stored[:, : model.count])
+
+    def spectra(self, model: Model) -> EntrySpectra:
+        """Return the spectra that answer the colours of the entries."""
+        fitted = self.at_nodes
+        if self.has_more:
+            model = self.entry_model
+            fitted = self.at_entries
+        return EntrySpectra(model, model.to_storage(fitted.multipliers))
 
     def table(
         self, model: Model, half_width: Array, measured: NDArray[np.float32] | None
     ) -> AtlasTable:
-        """Return the part of a cube that records the constraints; entries with more
-        coefficients have them there.
-        """
-        coefficients = model.to_storage(self.at_nodes.multipliers)
-        spectra = EntrySpectra(model, coefficients)
-        if self.at_entries is not self.at_nodes and len(self.names):
-            spectra = EntrySpectra(
-                self.entry_model,
-                self.entry_model.to_storage(self.at_entries.multipliers),
-            )
-        rgb = self.at_nodes.rgb
-        error = self.at_entries.error
+        """Return the part of a cube that records the constraints."""
         return AtlasTable(
-            self.names,
-            rgb,
-            coefficients,
-            half_width,
-            error,
-            spectra,
-            measured,
+            names=self.names,
+            rgb=self.at_nodes.rgb,
+            coefficients=model.to_storage(self.at_nodes.multipliers),
+            half_width=half_width,
+            error=self.at_entries.error,
+            spectra=self.spectra(model),
+            measured=measured,
             looks=self.looks,
         )
 
@@ -131,11 +141,10 @@ def read_spectra(
 ) -> Spectra:
     """Read the families of the library, and the entries of the atlas."""
     libraries = () if library is None else read_libraries(library)
-    known = families_of(options, libraries, sensor)
-    families = known if options.learns_families else ()
+    families = families_of(options, libraries, sensor)
     atlas = as_atlas(atlas)
     measured, outside = split_by_gamut(atlas, sensor)
-    return Spectra(libraries, families, known, atlas, measured, outside)
+    return Spectra(libraries, families, atlas, measured, outside)
 
 
 def as_atlas(atlas: AtlasLike) -> Atlas:
@@ -243,19 +252,19 @@ def _listed(names: Sequence[str]) -> str:
 
 
 def read_libraries(
-    library: Atlas | StrPath | Sequence[StrPath],
+    library: Atlas | StrPath | Sequence[Atlas | StrPath],
 ) -> tuple[tuple[Source, Atlas], ...]:
     """Read libraries, a family per file, or spectra given as an atlas; the digest of
     these is empty.
     """
-    atlases = map(
-        as_atlas,
-        [library] if isinstance(library, Atlas | str | os.PathLike) else library,
-    )
-    return tuple(
-        (atlas.sources[0] if len(atlas.sources) == 1 else Source("library", ""), atlas)
-        for atlas in atlases
-    )
+    if isinstance(library, Atlas | str | os.PathLike):
+        library = [library]
+    libraries = []
+    for atlas in map(as_atlas, library):
+        is_file = len(atlas.sources) == 1
+        source = atlas.sources[0] if is_file else Source("library", "")
+        libraries.append((source, atlas))
+    return tuple(libraries)
 
 
 def families_of(
@@ -268,45 +277,38 @@ def families_of(
     used as measured.
     """
     if libraries and not options.learns_families:
-        raise OptionError(
-            (
-                "a library shapes only the learnt prior of models with more than three "
-                "coefficients"
-            ),
-            hint=(
-                'use prior="learnt" and the moments model with 4 to 17 coefficients, '
-                "or leave out the library"
-            ),
+        problem = (
+            "a library shapes only the learnt prior of models with more than three "
+            "coefficients"
         )
+        hint = (
+            'use prior="learnt" and the moments model with 4 to 17 coefficients, or '
+            "leave out the library"
+        )
+        raise OptionError(problem, hint=hint)
     shipped = shipped_library(options.leave_out)
     if not np.array_equal(sensor.wavelengths, grid()):
         shipped = tuple(_at(family, sensor.wavelengths) for family in shipped)
     users = []
     for source, library in libraries:
         resampled = resample(library, sensor.wavelengths)
-        outside = int((~in_unit_cube(sensor.rgb(resampled.values))).sum())
-        if resampled.clips:
-            problem = (
-                f"clipped to [0, 1]: {len(resampled.clips)} spectra, first "
-                f"'{resampled.clips[0].name}'"
-            )
-            warn(
-                UpliftWarning(
-                    f"library '{source.name}': {problem}", code="entry-clipped"
-                )
-            )
+        values = resampled.values
+        outside = int((~in_unit_cube(sensor.rgb(values))).sum())
+        if clips := resampled.clips:
+            clipped = f"{len(clips)} spectra, first '{clips[0].name}'"
+            _warn_of_library(source, "entry-clipped", f"clipped to [0, 1]: {clipped}")
         if outside:
             problem = (
-                f"{outside} of {len(resampled.values)} spectra not used: their "
-                f"colours lie outside {sensor.space}"
+                f"{outside} of {len(values)} spectra not used: their colours lie "
+                f"outside {sensor.space}"
             )
-            warn(
-                UpliftWarning(
-                    f"library '{source.name}': {problem}", code="entry-out-of-gamut"
-                )
-            )
-        users.append(Family(source.name, resampled.values, SPREAD, RELATED))
+            _warn_of_library(source, "entry-out-of-gamut", problem)
+        users.append(Family(source.name, values, SPREAD, RELATED))
     return (*shipped, *users)
+
+
+def _warn_of_library(source: Source, code: str, problem: str) -> None:
+    warn(UpliftWarning(f"library '{source.name}': {problem}", code=code))
 
 
 def _at(family: Family, wavelengths: Array) -> Family:

@@ -12,9 +12,9 @@ from uplift.common.errors import UpliftWarning, warn
 from uplift.common.text import pluralise
 from uplift.fit.problem import Problem
 from uplift.lattice.entry_boxes import EntryBoxes
-from uplift.lattice.lattice import CORNERS, weighted_sum
+from uplift.lattice.lattice import CORNERS
 from uplift.lattice.point_table import PointTable
-from uplift.models.model import reflectance
+from uplift.lookup.interpolate import lattice_spectra
 from uplift.pipeline.entries import (
     Constraints,
     MeasuredEntries,
@@ -48,7 +48,7 @@ def smooth_spots(
         return constraints, {}
     share = LARGEST_STEP / steps[spots]
     weight = share[:, None]
-    own = constraints.reflectance(problem, rows)
+    own = _own_spectra(problem, constraints, rows)
     around = _lattice_spectra(problem, boxes, points, boxes.rgb[rows])
     names = tuple(constraints.names[row] for row in rows)
     goals = MeasuredEntries(
@@ -80,6 +80,12 @@ def warn_of_spots(shares: dict[str, float]) -> None:
     )
     hint = "exact_entries=True keeps them"
     warn(UpliftWarning(problem, code="entry-smoothed", hint=hint))
+
+
+def _own_spectra(problem: Problem, constraints: Constraints, rows: Indices) -> Array:
+    """Spectra (k, N) that answer the colours of entries (k,)."""
+    spectra = constraints.spectra(problem.model)
+    return spectra.reflectance(rows, problem.sensor.wavelengths)
 
 
 def _are_known(boxes: EntryBoxes, points: PointTable, rows: Indices) -> Array:
@@ -115,7 +121,7 @@ def _steepest(
     the light of the build.
     """
     sensor = problem.sensor
-    own = constraints.reflectance(problem, rows)
+    own = _own_spectra(problem, constraints, rows)
     codes = np.arange(len(sensor.decoding))
     centre = np.interp(boxes.rgb[rows], sensor.decoding, codes)
     steepest = np.zeros(len(rows))
@@ -135,8 +141,5 @@ def _lattice_spectra(
     problem: Problem, boxes: EntryBoxes, points: PointTable, rgb: Array
 ) -> Array:
     """Spectra (n, N) that the nodes answer to linear RGB (n, 3) without entries."""
-    corners, weights = boxes.lattice.corners(rgb)
-    nodes, row = np.unique(corners, return_inverse=True)
-    coefficients = points.coefficients[nodes]
-    spectra = reflectance(problem.model, coefficients, problem.sensor.wavelengths)
-    return weighted_sum(spectra, row.reshape(corners.shape), weights)
+    at = problem.sensor.wavelengths
+    return lattice_spectra(problem.model, boxes.lattice, points, rgb, at)

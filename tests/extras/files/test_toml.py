@@ -1,4 +1,4 @@
-"""Values written as TOML are read back by the standard library."""
+"""Tables written as TOML are read back by the standard library."""
 
 import tomllib
 
@@ -7,29 +7,36 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from uplift.extras.files.toml import matrix_value, number_value, row_value, text_value
+from uplift.extras.files.toml import toml_text
 
 TEXT = st.text(st.characters(exclude_categories=["Cs"]))
 
 
-def read(value):
-    return tomllib.loads(f"key = {value}")["key"]
+def again(value):
+    return tomllib.loads(toml_text({"some_key": value}))["some-key"]
 
 
 @given(TEXT)
 def test_any_text_round_trips(text):
-    assert read(text_value(text)) == text
+    assert again(text) == text
+    assert again([text]) == [text]
 
 
 @given(st.floats(allow_nan=False))
 def test_numbers_round_trip_to_nine_digits(value):
-    stored = read(number_value(value))
+    stored = again(value)
     assert isinstance(stored, float)
     assert stored == pytest.approx(value, rel=5e-9, abs=0)
 
 
-def test_rows_and_matrices_round_trip():
+def test_other_values_and_tables_round_trip():
     values = np.random.default_rng(3).normal(size=(3, 4))
-    assert read(row_value(values[0])) == pytest.approx(values[0], rel=5e-9)
-    assert np.array(read(matrix_value(values))) == pytest.approx(values, rel=5e-9)
-    assert read(row_value([])) == []
+    assert again(values[0]) == pytest.approx(values[0], rel=5e-9)
+    assert np.array(again(values)) == pytest.approx(values, rel=5e-9)
+    for value in (3, True, [], {"a": 1, "b": ["c"]}, [{"a": 1}, {"a": 2}]):
+        assert again(value) == value
+
+
+def test_values_come_before_tables_and_none_is_left_out():
+    text = toml_text({"a": {"b": None}, "c": None, "d": 1.0, "e": [{}]})
+    assert text == "d = 1.0\n\n[a]\n\n[[e]]"

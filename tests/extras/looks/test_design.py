@@ -16,8 +16,15 @@ from uplift.atlas.sources import read_atlas
 from uplift.colorimetry import observer
 from uplift.colorimetry.delta_e import delta_e_2000_weights, lab, lab_jacobian
 from uplift.colorimetry.sensor import in_unit_cube
-from uplift.extras.looks.design import MET, LookGoal, design_reflectance, fit_designs
-from uplift.fit.entries import fit_entries, join_entries
+from uplift.extras.looks.design import (
+    MET,
+    LookGoal,
+    design_reflectance,
+    fit_designs,
+    join_entries,
+)
+from uplift.extras.looks.targets import prior_with_looks
+from uplift.fit.entries import fit_entries
 from uplift.fit.prior import fit_prior
 from uplift.fit.problem import Problem
 from uplift.models.model import evaluate
@@ -117,7 +124,7 @@ def test_the_prior_follows_looks_nearby_only(sensor, materials):
     look = fit_designs(
         problem, [goal], design_reflectance(sensor, goal, expected[7])[None]
     )
-    changed = plain.with_entries(join_entries(entries, look), 1)
+    changed = prior_with_looks(plain, join_entries(entries, look), 1)
     assert changed.errors is plain.errors
     assert changed.kriging.kernel == plain.kriging.kernel
     near = goal.rgb[None] * 1.01

@@ -6,7 +6,7 @@ import re
 import jinja2
 import pytest
 
-from uplift.extras.pages.html import _environment, content_security_policy, render
+from uplift.extras.pages.html import content_security_policy, environment, render
 
 HOSTILE = "</script><b title='\"'>&"
 BASE = "extras/pages/templates/base.html.j2"
@@ -14,7 +14,7 @@ BASE = "extras/pages/templates/base.html.j2"
 
 def rendered(template, **values):
     source = '{% import "extras/pages/templates/macros.html.j2" as parts %}' + template
-    return _environment().from_string(source).render(**values).strip()
+    return environment().from_string(source).render(**values).strip()
 
 
 def test_page_escapes_its_texts():

@@ -6,7 +6,7 @@ import pytest
 
 from tests.browsing import check_page, open_page, shared_tab
 from uplift.extras.pages.figure import to_page_svg
-from uplift.extras.pages.html import Markup, _environment, render
+from uplift.extras.pages.html import Markup, environment, render
 from uplift.extras.pages.marks import line
 from uplift.extras.pages.panels import Panel, draw
 
@@ -23,7 +23,7 @@ def page(**values):
     figure = draw([Panel([line([0, 1], [0, 1], colour="#20509a")])])
     headings = [f"a long heading {row}" for row in range(12)]
     chart = to_page_svg(figure, "A line")
-    template = _environment().from_string(WIDE_TABLE)
+    template = environment().from_string(WIDE_TABLE)
     return template.render(
         **{"title": "A page", "lead": "x", "headings": headings, "chart": chart}
         | values

@@ -10,24 +10,23 @@ from numpy.testing import assert_allclose
 
 from tests.browsing import WIDTHS, check_page, open_page, overflow, shared_tab
 from tests.extras.paint.invented import invented
-from tests.helpers import output_of, raises
+from tests.helpers import output_of
 from tests.parts import NODE, need
 from uplift.colorimetry import observer
 from uplift.colorimetry.delta_e import delta_e_rgb
-from uplift.common.errors import OutputError
 from uplift.extras.colour.srgb import decode, hex_codes
-from uplift.extras.paint.paint_page import page, write_page
+from uplift.extras.paint.paint_page import page
 from uplift.extras.paint.recipes import PaintTarget, match
 
 SENSOR = observer.sensor(wavelengths=(400, 700, 10))
 DIFFERENCES = """
 import { readFileSync } from "node:fs";
-const code = readFileSync(process.argv[2], "utf8");
-const { toLab, deltaE } = new Function(`${code}; return { toLab, deltaE };`)();
+const code = process.argv.slice(2).map(path => readFileSync(path, "utf8")).join("");
+const { xyzToLab, deltaE } = new Function(`${code}; return { xyzToLab, deltaE };`)();
 const { pairs, colours, white } = JSON.parse(readFileSync(0, "utf8"));
 const errors = pairs.map(row => deltaE(row.slice(0, 3), row.slice(3, 6)));
 const back = pairs.map(row => deltaE(row.slice(3, 6), row.slice(0, 3)));
-const labs = colours.map(xyz => toLab(xyz, white));
+const labs = colours.map(xyz => xyzToLab(xyz, white));
 console.log(JSON.stringify({ errors, back, labs }));
 """
 
@@ -163,15 +162,6 @@ def test_one_paint_and_names_of_markup(paints, tmp_path):
     assert text(tab, "recipe") == f"1 {name.strip()}"
 
 
-def test_files_that_exist_stay(paints, tmp_path):
-    path = tmp_path / "paints.html"
-    path.write_text("mine")
-    with raises(OutputError, "file-exists"):
-        write_page(paints, path)
-    write_page(paints, path, force=True)
-    assert path.read_text("utf-8") == page(paints)
-
-
 def test_differences_in_javascript_are_ciede2000(repository, tmp_path):
     """By the published pairs, and CIE L*a*b* as in Python."""
     need(NODE)
@@ -182,11 +172,12 @@ def test_differences_in_javascript_are_ciede2000(repository, tmp_path):
     white = SENSOR.light.white
     given = {"pairs": pairs, "colours": colours, "white": white}
     (tmp_path / "differences.mjs").write_text(DIFFERENCES)
-    script = repository / "uplift" / "extras" / "paint" / "colour_difference.js"
+    extras = repository / "uplift" / "extras"
     answer = output_of(
         "node",
         tmp_path / "differences.mjs",
-        script,
+        extras / "pages" / "lab.js",
+        extras / "paint" / "colour_difference.js",
         input=json.dumps({name: values.tolist() for name, values in given.items()}),
     )
     found = json.loads(answer)

@@ -15,8 +15,8 @@ from uplift.colorimetry.delta_e import delta_e_rgb
 from uplift.colorimetry.observer import light, sensor
 from uplift.colorimetry.sensor import in_unit_cube
 from uplift.common.errors import OptionError
+from uplift.extras.images.picture import read_picture
 from uplift.extras.relight.relight import RGB_PRODUCT, relight, write_relit_sheet
-from uplift.extras.texture.picture import read_picture
 
 LIGHTS = ("D65", "A", "FL11", "HP1")
 

@@ -85,7 +85,13 @@ def test_lattice_errors_are_those_of_the_lattice_without_the_entries(
         zip(macbeth.names, on_grid(macbeth, data.sensor.wavelengths), strict=True)
     )
     inside = [row for row, name in enumerate(found.names) if name != OUTSIDE]
-    spectra = lattice_spectra(data, found.rgb[inside], data.sensor.wavelengths)
+    spectra = lattice_spectra(
+        data.model,
+        data.lattice,
+        data.points,
+        found.rgb[inside],
+        data.sensor.wavelengths,
+    )
     assert_allclose(found.lattice.answers[inside], spectra, atol=1e-12)
     for row, spectrum in zip(inside, spectra, strict=True):
         missed = [

@@ -16,9 +16,9 @@ from tests.helpers import raises
 from uplift.common import machine
 from uplift.common.errors import OutputError, TextureError
 from uplift.extras import texture
-from uplift.extras.texture import exr_file, writer
-from uplift.extras.texture.image import Window, open_image
-from uplift.extras.texture.writer import OutputPart, open_writer
+from uplift.extras.images import exr_file, writer
+from uplift.extras.images.image import Window, open_image
+from uplift.extras.images.writer import OutputPart, open_writer
 
 
 @pytest.fixture

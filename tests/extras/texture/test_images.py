@@ -28,9 +28,9 @@ from uplift.common.errors import ColourError, TextureError
 from uplift.cube.data import EntrySpectra
 from uplift.extras import texture
 from uplift.extras.colour.spaces import find_space
+from uplift.extras.images.image import open_image
+from uplift.extras.images.picture import read_picture
 from uplift.extras.mitsuba.texels import read_colours
-from uplift.extras.texture.image import open_image
-from uplift.extras.texture.picture import read_picture
 from uplift.extras.texture.scene_colours import Images
 from uplift.models.model import evaluate
 
@@ -114,6 +114,11 @@ def test_spectra_that_are_not_used_are_stated(name, sensor, tmp_path):
     assert codes == ["spectra-not-used"] * (name != "T.x")
 
 
+def mapping(uplifter, method):
+    """Return the same uplifter with another gamut mapping."""
+    return replace(uplifter, reader=replace(uplifter.reader, out_of_gamut=method))
+
+
 @pytest.mark.parametrize("method", ["clip", "scale", "desaturate", "desaturate-oklab"])
 def test_only_invalid_pixels_are_mapped_and_counted(
     method, colours, to_texture, spectral, tmp_path
@@ -124,14 +129,15 @@ def test_only_invalid_pixels_are_mapped_and_counted(
     )
     bad[4, 4] = (np.inf, 5, np.nan)
     bad[4, 5] = np.nan
-    result = to_texture(planes(bad), replace(spectral, out_of_gamut=method))
+    result = to_texture(planes(bad), mapping(spectral, method))
     bad[4, 4] = (1, 1, 0)
     bad[4, 5] = 0
     mapped = map_to_gamut(bad, spectral.cube.data.sensor, method)
     assert_array_equal(rgb_of(result), mapped.rgb)
-    assert result.counts == texture.Counts(
-        600, outside=5, not_finite=2, max_change=mapped.max_change
-    )
+    assert result.counts.pixels == 600
+    assert result.counts["pixels-not-finite"] == 2
+    outside = result.counts.changes["pixels-out-of-gamut"]
+    assert (outside.pixels, outside.largest) == (5, mapped.max_change)
     assert [warning.code for warning in result.warnings] == [
         "pixels-out-of-gamut",
         "pixels-not-finite",
@@ -145,7 +151,7 @@ def test_only_invalid_pixels_are_mapped_and_counted(
 
 @pytest.mark.parametrize("bad", [1.5, -0.5, np.nan])
 def test_pixels_outside_can_be_an_error(bad, colours, spectral, to_texture, tmp_path):
-    strict = replace(spectral, out_of_gamut="error")
+    strict = mapping(spectral, "error")
     to_texture(planes(colours), strict)
     rgb = colours.copy()
     rgb[3, 3, 0] = bad
@@ -164,7 +170,7 @@ def test_pixels_outside_can_be_an_error(bad, colours, spectral, to_texture, tmp_
 def test_several_parts_tiles_windows_and_other_channels(
     kind, band, spectral, to_texture, tmp_path, monkeypatch
 ):
-    monkeypatch.setattr("uplift.extras.texture.image.MAX_BAND_BYTES", band)
+    monkeypatch.setattr("uplift.extras.images.image.MAX_BAND_BYTES", band)
     shape = (70, 45)
     rng = np.random.default_rng(2)
     rgb = rng.random((*shape, 3)).astype(np.float16)
@@ -369,8 +375,8 @@ def test_odd_alpha_gives_finite_colours_and_warnings(spectral, to_texture):
         "pixels-not-finite",
         "pixels-out-of-gamut",
     }
-    assert result.counts.not_finite == 1
-    assert result.counts.outside == 2  # below 0 and the colour
+    assert result.counts["pixels-not-finite"] == 1
+    assert result.counts["pixels-out-of-gamut"] == 2  # below 0 and the colour
     found = read_channels(result.target, (*"RGB", *spectral.channels))
     assert np.isfinite(found).all()
     assert (found[0, [1, 4]] == 0).all()
@@ -385,7 +391,7 @@ def test_scenes_and_mitsuba_read_the_divided_colours(
     expected = np.where(alpha[..., None] > 0, colours, 0)
     found = np.concatenate(list(Images((multiplied,)).colours(multiplied, sensor)))
     assert_allclose(found.reshape(expected.shape), expected, rtol=0, atol=1e-6)
-    texels = read_colours(multiplied, texture.prepare(small_cube))[0]
+    texels = read_colours(multiplied, texture.prepare(small_cube).reader)[0]
     assert_allclose(texels, expected, rtol=0, atol=1e-6)
 
 
@@ -394,7 +400,7 @@ def test_scenes_and_mitsuba_read_the_divided_colours(
 def test_pictures_are_means_weighted_by_alpha(
     max_side, band, multiplied, colours, alpha, sensor, monkeypatch
 ):
-    monkeypatch.setattr("uplift.extras.texture.image.MAX_BAND_BYTES", band)
+    monkeypatch.setattr("uplift.extras.images.image.MAX_BAND_BYTES", band)
     found = read_picture(multiplied, sensor, max_side=max_side)
     step = -(-30 // max_side)
     assert found.reduction == step
@@ -468,7 +474,7 @@ def test_pixels_of_an_entry_outside_the_space_have_its_spectrum(
         assert result.warnings == ()
         return
     assert [warning.code for warning in result.warnings] == ["pixels-out-of-gamut"]
-    assert result.counts.outside == 2
+    assert result.counts["pixels-out-of-gamut"] == 2
     mapped = map_to_gamut(pixels[1], data.sensor, method).rgb
     assert_allclose(
         colours[1], [(boxes.rgb[0] + mapped[0]) / 2, mapped[1]], rtol=0, atol=1e-5

@@ -66,8 +66,8 @@ def spectra(cube, colours):
 def test_numbers_choose_the_cube(
     converted, cubes, colours, tmp_path, monkeypatch, band
 ):
-    monkeypatch.setattr("uplift.extras.texture.writer.MAX_BAND_BYTES", band)
-    monkeypatch.setattr("uplift.extras.texture.image.MAX_BAND_BYTES", band)
+    monkeypatch.setattr("uplift.extras.images.writer.MAX_BAND_BYTES", band)
+    monkeypatch.setattr("uplift.extras.images.image.MAX_BAND_BYTES", band)
     numbers = np.random.default_rng(1).integers(0, 3, SHAPE, dtype=np.uint8)
     found = converted(cubes, png(tmp_path / "ids.png", numbers))
     for number, cube in enumerate(cubes):
@@ -121,7 +121,7 @@ def test_moments_and_multipliers_mix_as_reflectances_do(
     found = converted(cubes[:2], mask, texture.Multipliers()).astype(float)
     spectrum = evaluate(model, found.reshape(-1, 9), sensor.wavelengths)
     assert_allclose(sensor.rgb(spectrum).reshape(*SHAPE, 3), colours, atol=2e-4)
-    alone = texture.prepare(cubes[0], texture.Multipliers(), threads=1).sample(
+    alone = texture.prepare(cubes[0], texture.Multipliers(), threads=1).pixels.sample(
         colours[:, ::3]
     )
     assert_array_equal(found[:, ::3], alone)
@@ -201,7 +201,7 @@ def test_an_entry_outside_the_space_answers_where_its_cube_is_chosen(
         colours, [boxes.rgb[0], clipped, (boxes.rgb[0] + clipped) / 2], atol=1e-6
     )
     alone = [
-        each.convert(colours[None, [row]])[0][1][0, 0]
+        each.numbers(colours[None, [row]])[1][0, 0]
         for row, each in enumerate(converter.uplifters)
     ]
     assert_allclose(numbers[:2], alone, atol=1e-6)

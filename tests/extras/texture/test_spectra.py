@@ -93,7 +93,7 @@ def test_multipliers_of_a_colour_do_not_depend_on_how_often_it_occurs(small_cube
     rng = np.random.default_rng(5)
     few = rng.uniform(0, 1, (50, 3)).astype(np.float32)
     rows = rng.integers(0, 50, (30, 40))
-    sample = texture.prepare(small_cube, texture.Multipliers(), threads=1).sample
+    sample = texture.prepare(small_cube, texture.Multipliers(), threads=1).pixels.sample
     assert_array_equal(sample(few[rows]), sample(few)[rows])
 
 
@@ -143,7 +143,7 @@ def test_unrealisable_pixels_are_counted(colours, to_texture):
     outside = (
         wide.data.solid.signed_distance(colours.reshape(-1, 3)) > wide.data.threshold
     )
-    assert 0 < counts.unrealisable == outside.sum() < colours.size / 6
+    assert 0 < counts["pixels-unrealisable"] == outside.sum() < colours.size / 6
     assert counts.warnings()[0].code == "pixels-unrealisable"
 
 
@@ -240,7 +240,8 @@ def test_what_no_light_has_is_moved_and_counted(table, lights, to_texture):
         np.float32,
     )
     conversion = to_texture(planes(rgb), lights)
-    assert (conversion.counts.not_lights, conversion.counts.not_finite) == (1, 3)
+    assert conversion.counts["pixels-not-lights"] == 1
+    assert conversion.counts["pixels-not-finite"] == 3
     assert [each.code for each in conversion.warnings] == [
         "pixels-not-finite",
         "pixels-not-lights",
@@ -260,7 +261,8 @@ def test_half_floats_end_at_their_largest(table, to_texture):
     converter = texture.prepare_lights(table, depth="half", threads=1)
     conversion = to_texture(planes(rgb), converter)
     assert [
-        (each.code, conversion.counts.too_bright) for each in conversion.warnings
+        (each.code, conversion.counts["pixels-too-bright"])
+        for each in conversion.warnings
     ] == [("pixels-too-bright", 1)]
     assert spectral_channels(conversion.target)[0, 0].max() == 65504
 

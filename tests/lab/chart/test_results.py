@@ -70,7 +70,6 @@ def test_set_up_is_part_of_the_time_of_a_call():
     row = row_of("one", 1000, 1.0)
     assert LIGHTS.points([row]) == {row: (1000, 1)}
     assert WITH_SET_UP.points([row]) == {row: (1.5e9 + 64 * 1000, 1)}
-    assert WITH_SET_UP.labels(row) == ("1.5 s", "1")
 
 
 CUBES = chart_of(

@@ -16,7 +16,7 @@ def test_half_an_atlas_of_similar_spectra_predicts_the_other():
     entries = (Entry(f"{level:.3f}", GRID, level * ripples) for level in levels)
     family = Atlas(tuple(entries))
     events = []
-    records = holdout(family, 2, events.append, dim=8)
+    records = holdout(family, events.append, dim=8)
     assert events[-1].done == events[-1].total == len(records)
     by_method = {record["cube"]: record for record in records}
     half = by_method[HALF]
@@ -24,4 +24,4 @@ def test_half_an_atlas_of_similar_spectra_predicts_the_other():
         for key in ("rms", "A", "FL11", "HP1"):
             assert half[key] < 0.6 * by_method[name][key]
     assert (half["colours"], by_method[SIGMOID]["colours"]) == (12, 24)
-    assert half["standard_error"]["count"] == 4 * 12
+    assert half["standard_error"]["count"] == 6 * 12

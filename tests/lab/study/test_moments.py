@@ -15,7 +15,7 @@ from uplift.atlas.atlas import Atlas
 from uplift.atlas.resampling import on_grid
 from uplift.atlas.sources import read_atlas
 from uplift.common.errors import AtlasError, OptionError
-from uplift.extras.scene.representations.samples import wavelengths
+from uplift.extras.papers.representations.samples import wavelengths
 from uplift.lab.study.moments import (
     ALL_ATLASES,
     MAX_MOMENTS,

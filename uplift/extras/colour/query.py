@@ -243,7 +243,7 @@ def locate_xyz(cube: Cube, xyz: ArrayLike) -> tuple[Array, Array, Mask]:
     which colours are outside (n,).
     """
     from uplift.colorimetry.gamut import map_to_gamut
-    from uplift.lookup.outside import MAPPING
+    from uplift.extras.colour.outside import MAPPING
 
     sensor = cube.data.sensor
     sensor.require_xyz()
@@ -272,7 +272,7 @@ def _block(
     grid = np.concatenate([sensor.wavelengths, at])
     answered = np.where(outside[:, None], requested, rgb)
     if outside.any():
-        from uplift.lookup.outside import reflectance_anywhere
+        from uplift.extras.colour.outside import reflectance_anywhere
 
         spectra = reflectance_anywhere(data, answered, grid, mode, outside)
     elif answering is not None:
@@ -378,7 +378,7 @@ def _errors(
     errors = np.full((len(rgb), 2), np.nan)
     errors[~outside] = expected_errors(cube, rgb[~outside], light)
     if entries:
-        from uplift.lookup.errors_under_lights import outside_errors
+        from uplift.extras.colour.outside import outside_errors
 
         known = outside_errors(cube.data, light)[list(entries.values())]
         errors[list(entries)] = known[:, None]

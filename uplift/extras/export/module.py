@@ -15,8 +15,8 @@ from string import Template
 from uplift.common.arrays import StrPath
 from uplift.common.files import write_text
 from uplift.cube.file import VERSION
-from uplift.extras.export.program import read_source
 from uplift.extras.export.runtime import HEADER, SPARSE, compose_header
+from uplift.extras.export.source import read_source
 
 MODULE = "uplift.js"
 SOURCE = "module.c"
@@ -25,9 +25,16 @@ LIBRARY = ("math.h", "stdlib.h", "string.h")
 COMPILED = files("uplift.extras.export") / "source" / "module" / "uplift.wasm"
 
 
-def write_module(path: StrPath, *, force: bool = False) -> None:
+def export(_: None, path: Path, style: str, *, force: bool) -> str:
+    """Write the module."""
+    return write_module(path, force=force)
+
+
+def write_module(path: StrPath, *, force: bool = False) -> str:
     """Write ``uplift.js``, the reader of cube files for JavaScript."""
-    write_text(compose_module(), Path(path), force=force)
+    text = compose_module()
+    write_text(text, Path(path), force=force)
+    return f"reads cube files in JavaScript, {len(text) / 1e3:.0f} kB"
 
 
 def compose_module() -> str:

@@ -1,15 +1,14 @@
 """Programs for renderers and shaders: one C-like source, preceded by macros of each
 language.
 
-In ``source/``, ``UP_READS`` and ``UP_TABLE`` are the parameter and the argument by
-which CUDA passes the table, and the reader of cube files passes a cube. `RUNTIME_WORDS`
-are for that reader.
+A program is a heading, and the source of its language, which includes macros, the
+lookup and its public functions. In the lookup, ``UP_READS`` and ``UP_TABLE`` are the
+parameter and the argument by which CUDA passes the table, and the reader of cube files
+passes a cube. `RUNTIME_WORDS` are for that reader.
 """
 
-import re
 import zlib
 from dataclasses import dataclass
-from importlib.resources import files
 from pathlib import Path
 from string import Template
 from typing import Any
@@ -39,33 +38,31 @@ from uplift.extras.export.program_table import (
     moved_cells,
 )
 from uplift.extras.export.rounding import rounding_error
+from uplift.extras.export.source import (
+    comment,
+    identifier,
+    literal,
+    name_program,
+    read_source,
+    unroll,
+)
 from uplift.extras.files.outputs import check_outputs
 from uplift.lookup.cube import Cube
 
 LARGE = 16_000_000
 """Size in bytes above which compilation of a header is slow."""
-LOOP = re.compile(
-    r"^(?P<indent> *)UP_UNROLL\n *for \(int (?P<name>\w+) = (?P<start>.+); \w+ < "
-    r"(?P<stop>.+); \+\+\w+\) "
-    r"(?P<body>\{\n(?:(?P=indent) .*\n)*(?P=indent)\}\n|[^{].*\n)",
-    re.MULTILINE,
-)
-"""A loop to be written out: its statement is on the same line, or in braces."""
-TERM = re.compile(r"(?P<sign>[+-]?) *(?P<word>\w+)(?: */ *(?P<divisor>\d+))?")
-"""A term of the bound of a loop."""
 
 
 @dataclass(frozen=True)
 class Language:
-    """Suffix of programs, files of macros, suffix of the file of public functions, and
-    wavelengths of one call.
+    """Suffix of programs, suffix of the file of public functions, and wavelengths of
+    one call.
 
     The table is, by ``forms``, the default first: in the program, a ``"header"``, or in
     a ``"file"`` of numbers. ``vector`` is what types such as ``vec3`` begin with.
     """
 
     suffix: str
-    macros: tuple[str, ...]
     calls: str
     width: int = 4
     forms: tuple[str, ...] = ("file",)
@@ -73,16 +70,10 @@ class Language:
 
 
 LANGUAGES = {
-    "c": Language(
-        ".h",
-        ("c.h", "loops.c", "numbers.c", "host.c"),
-        ".c",
-        16,
-        ("header", "file"),
-    ),
-    "cuda": Language(".cuh", ("cuda.cuh", "host.c"), ".cuh"),
-    "glsl": Language(".glsl", ("glsl.glsl", "shader.glsl"), ".glsl", vector="vec"),
-    "hlsl": Language(".hlsl", ("hlsl.hlsl", "shader.glsl"), ".glsl", vector="float"),
+    "c": Language(".h", ".c", 16, ("header", "file")),
+    "cuda": Language(".cuh", ".cuh"),
+    "glsl": Language(".glsl", ".glsl", vector="vec"),
+    "hlsl": Language(".hlsl", ".glsl", vector="float"),
 }
 """Languages of `write_program`."""
 RUNTIME_WORDS = {
@@ -91,7 +82,6 @@ RUNTIME_WORDS = {
     "UP_ROW_OF(index)": "index",
     "UP_SELDOM ": "UP_FUNCTION ",
     "UP_SAMPLE_ROOM": "UP_SAMPLES",
-    "UP_ALIASES\n": "#define up_find up_locate\n#define up_answer up_blend\n",
 }
 """Words of the source that are macros in the reader of cube files, and what programs
 with the numbers of one cube have instead.
@@ -203,39 +193,41 @@ def compose(
     ``up_`` and ``UP_`` in the source become the name of the program.
     """
     language = LANGUAGES[style]
-    name = identifier(stem)
     image = table.image()
-    text = read_source(f"{kind}.c")
-    text = text.replace(
-        "${macros}", "".join(read_source(macro) for macro in language.macros)
-    )
-    calls = read_source(f"{kind}_calls{language.calls}")
-    overview, _, calls = calls.partition(" */\n")
-    text = text.replace("${calls}", calls)
-    text = text.replace(
-        "${overview}", overview.removeprefix("/* ").replace("UP_VEC", language.vector)
-    )
-    text = text.replace("${table}", read_source(f"table_{form}.c"))
+    overview, calls = read_calls(kind, language.calls)
+    lookup = read_source(f"{kind}.c") + calls
     for word, plain in RUNTIME_WORDS.items():
-        text = text.replace(word, plain)
-    text = _unroll(text, {f"UP_{key}": value for key, value in table.constants.items()})
-    text = re.sub(r"\bup_", f"{name}_", text)
-    text = re.sub(r"\bUP_", f"{name.upper()}_", text)
-    constants = (
-        f"#define {name.upper()}_{key} {literal(value)}"
+        lookup = lookup.replace(word, plain)
+    constants = {f"UP_{key}": value for key, value in table.constants.items()}
+    parts = {
+        "overview": overview.replace("UP_VEC", language.vector),
+        "program": unroll(lookup, constants).rstrip("\n"),
+        "table": read_source(f"table_{form}.c"),
+    }
+    text = read_source(f"{kind}_heading.c") + read_source(f"{style}{language.suffix}")
+    text = name_program(Template(text).safe_substitute(parts), stem)
+    name = identifier(stem).upper()
+    definitions = (
+        f"#define {name}_{key} {literal(value)}"
         for key, value in table.constants.items()
     )
     shared = {
         "version": version(),
         "stem": comment(stem),
         "width": language.width,
-        "constants": "\n".join(constants),
+        "constants": "\n".join(definitions),
         "columns": COLUMNS,
         "rows": len(image),
         "size": image.size,
         "checksum": zlib.crc32(image.tobytes()),
     }
     return Template(text).safe_substitute(shared | words)
+
+
+def read_calls(kind: str, suffix: str) -> tuple[str, str]:
+    """Return what the public functions are, for the heading, and their source."""
+    overview, _, calls = read_source(f"{kind}_calls{suffix}").partition(" */\n")
+    return overview.removeprefix("/* "), calls
 
 
 def write_files(
@@ -291,54 +283,3 @@ def _check_table(table: Path, image: bytes, program: Path, *, force: bool) -> No
     if readers:
         problem = f"replaced; {' and '.join(readers)} can no longer read it"
         warn(UpliftWarning(problem, path=table, hint="export them again"))
-
-
-def identifier(stem: str) -> str:
-    """Convert a file name to an identifier: 'macbeth-32' → 'macbeth_32', '32' →
-    'cube_32'.
-    """
-    name = re.sub(r"\W+|__+", "_", stem, flags=re.ASCII)
-    return name if re.match(r"[A-Za-z]", name) else f"cube_{name}".rstrip("_")
-
-
-def comment(text: str) -> str:
-    """Return text that cannot end a comment; names in a cube file are arbitrary."""
-    ascii_text = text.encode("ascii", "replace").decode()
-    return re.sub(r"[*$]", "", ascii_text).replace("\n", " ")
-
-
-def read_source(name: str) -> str:
-    return (files("uplift.extras.export") / "source" / name).read_text(encoding="ascii")
-
-
-def _unroll(text: str, constants: dict[str, Any]) -> str:
-    """Write out loops marked by ``UP_UNROLL``, outer ones first: few compilers of
-    shaders unroll, none all loops.
-    """
-
-    def copies(loop: re.Match[str]) -> str:
-        start = _bound(loop["start"], constants)
-        values = range(start, _bound(loop["stop"], constants))
-        counter = re.compile(rf"\b{loop['name']}\b")
-        bodies = (counter.sub(str(value), loop["body"]) for value in values)
-        return _unroll("".join(f"{loop['indent']}{body}" for body in bodies), constants)
-
-    return LOOP.sub(copies, text)
-
-
-def _bound(text: str, constants: dict[str, Any]) -> int:
-    """Return the value of a sum of integers, constants and their quotients."""
-    total = 0
-    for sign, word, divisor in TERM.findall(text):
-        value = constants[word] if word in constants else int(word)
-        value //= int(divisor or 1)
-        total += -value if sign == "-" else value
-    return total
-
-
-def literal(value: float) -> str:
-    """Return an integer, or a number of single precision in nine digits."""
-    if isinstance(value, int):
-        return str(value)
-    text = f"{value:.9g}"
-    return f"{text}f" if {".", "e"} & set(text) else f"{text}.0f"

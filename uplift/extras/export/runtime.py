@@ -5,8 +5,9 @@ number of coefficients, and of the reader of files in ``source/runtime/``.
 """
 
 import re
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from decimal import Decimal
 from itertools import product
 from pathlib import Path
 from string import Template
@@ -15,8 +16,10 @@ from typing import Any
 from uplift.common.arrays import StrPath
 from uplift.common.files import write_text
 from uplift.cube.file import FEATURES, VERSION
-from uplift.extras.export.program import LANGUAGES, literal, read_source
+from uplift.cube.schema import ARRAYS
+from uplift.extras.export.program import LANGUAGES, read_calls
 from uplift.extras.export.program_table import MOVES, TEXEL
+from uplift.extras.export.source import literal, read_source
 from uplift.models.moments import MAX_COUNT, WARPS
 
 HEADER = "uplift.h"
@@ -86,136 +89,129 @@ SPARSE = [
 enough for every cube.
 """
 KERNELS = SIGMOIDS + MOMENTS + SPARSE
-READER = ("file.c", "content.c", "table.c", "build.c")
-"""Parts of the reader in reading order."""
-ROUNDS = 64
-"""Steps of SHA-256 for a block."""
+READ = (
+    "nodes",
+    "points",
+    "coefficients",
+    "distance",
+    "standard_error",
+    "atlas.rgb",
+    "atlas.reach",
+    "atlas.error",
+    "atlas.coefficients",
+    "atlas.entry_coefficients",
+    "sensor.wavelengths",
+    "sensor.cmfs",
+    "sensor.power",
+    "sensor.xyz_to_rgb",
+    "sensor.sensitivities",
+)
+"""Arrays of a cube file that lookups need."""
+TYPES = ("float64", "float32", "uint8", "int32", "int16", "uint32")
+"""Types of arrays, in the order of the reader."""
+LARGEST_PRIME = 311
+"""The last of 64, one for each step of SHA-256."""
 PER_LINE = 8
 NUMBERS_OF_WARP = 6
-SKIPPED = "#ifdef UP_VEC4"
-"""Begins a part of the source for shaders."""
 
 
-def write_header(path: StrPath, *, force: bool = False) -> None:
+def export(_: None, path: Path, style: str, *, force: bool) -> str:
+    """Write the header."""
+    return write_header(path, force=force)
+
+
+def write_header(path: StrPath, *, force: bool = False) -> str:
     """Write ``uplift.h``, the reader of cube files for programs in C and C++."""
-    write_text(compose_header(), Path(path), force=force)
+    text = compose_header()
+    write_text(text, Path(path), force=force)
+    return f"reads cube files in C and C++, {len(text) / 1e3:.0f} kB"
 
 
 def compose_header(kernels: Sequence[Kernel] = KERNELS) -> str:
     """Compose the header of its parts, with the lookups of some kernels."""
-    reader = "".join(read_source(f"runtime/{name}") for name in READER)
-    text = (
-        read_source("runtime/head.h")
-        + Template(reader).substitute(_reader_words())
-        + "\n"
-        + read_source("loops.c")
-        + read_source("host.c")
-        + _kernel_macros()
-        + "".join(_inclusions(kernels))
-        + Template(read_source("runtime/calls.c")).substitute(_call_words(kernels))
-        + "\n#ifdef UP_KERNEL\n\n"
-        + _kernel()
-        + "#endif\n"
-        + read_source("runtime/end.c")
-    )
-    text = re.sub(r"\bUP_", "UPLIFT_", text)
-    return Template(text).substitute(_head_words())
-
-
-def _head_words() -> dict[str, Any]:
-    return {
+    words = {
         "format": VERSION,
         "samples": SAMPLES,
         "count": MAX_COUNT,
         "width": LANGUAGES["c"].width,
+        "definitions": "\n".join(
+            f"#define UP_{name} {literal(value)}" for name, value in MOVES.items()
+        ),
+        "inclusions": "\n".join(map(_inclusion, kernels)),
+        "kernels": ",".join(map(_kernel_row, kernels)),
+        "kernel": _kernel(),
     }
+    text = Template(read_source("runtime/uplift.h")).substitute(words | _reader_words())
+    return re.sub(r"\bUP_", "UPLIFT_", text)
 
 
 def _reader_words() -> dict[str, Any]:
     """Return the words of the reader that follow from the format and the models."""
-    primes = _primes(ROUNDS)
+    primes = list(filter(_is_prime, range(2, LARGEST_PRIME + 1)))
     warps = []
     for name, terms in WARPS.items():
         numbers = [number for term in terms for number in term]
         numbers += [0.0] * (NUMBERS_OF_WARP - len(numbers))
         warps.append(f'{{"{name}", {{{", ".join(map(repr, numbers))}}}}}')
     return {
-        "constants": _words_of_hash(_root_fraction(prime, 3) for prime in primes),
-        "start": _words_of_hash(_root_fraction(prime, 2) for prime in primes[:8]),
+        "constants": _hash_words(primes, 3),
+        "start": _hash_words(primes[:8], 2),
         "features": ", ".join(f'"{feature}"' for feature in FEATURES),
+        "arrays": ",\n    ".join(map(_array_word, READ)),
+        "schema": ",".join(map(_schema_row, READ)),
         "warps": ", ".join(warps),
     }
 
 
-def _call_words(kernels: Sequence[Kernel]) -> dict[str, Any]:
-    rows = []
-    for kernel in kernels:
-        kinds = (
-            kernel.is_sigmoid,
-            kernel.is_warped,
-            kernel.is_inexact,
-            kernel.is_sparse,
-        )
-        numbers = [kernel.count, *map(int, kinds)]
-        text = ", ".join(map(str, numbers))
-        rows.append(f"\n        {{{text}, &{kernel.name}_functions}}")
-    return {"kernels": ",".join(rows), "samples": SAMPLES}
+def _array_word(name: str) -> str:
+    return f"UPLIFT_{name.upper().replace('.', '_')}"
 
 
-def _kernel_macros() -> str:
-    constants = "\n".join(
-        f"#define UP_{name} {literal(value)}" for name, value in MOVES.items()
+def _schema_row(name: str) -> str:
+    """Return the row of an array in the schema of the reader."""
+    stored = ARRAYS[name]
+    types = sum(1 << TYPES.index(kind) for kind in stored.types)
+    feature = FEATURES.index(stored.feature) + 1 if stored.feature else 0
+    low, high = map(repr, (stored.low, stored.high))
+    return f'\n    {{"{name}", "{stored.shape}", {types}, {low}, {high}, {feature}}}'
+
+
+def _kernel_row(kernel: Kernel) -> str:
+    """Return the row of a kernel in the list from which one is chosen."""
+    kinds = (
+        kernel.is_sigmoid,
+        kernel.is_warped,
+        kernel.is_inexact,
+        kernel.is_sparse,
     )
-    return Template(read_source("runtime/kernel_macros.h")).substitute(
-        constants=constants
-    )
+    text = ", ".join(map(str, [kernel.count, *map(int, kinds)]))
+    return f"\n        {{{text}, &{kernel.name}_functions}}"
 
 
-def _inclusions(kernels: Sequence[Kernel]) -> Iterator[str]:
-    """Yield the lines by which the header includes itself for each kernel."""
-    for kernel in kernels:
-        lines = [f"#define UP_{key} {value}" for key, value in kernel.constants.items()]
-        yield "\n".join(["", *lines, "#include UPLIFT_FILE", ""])
+def _inclusion(kernel: Kernel) -> str:
+    """Return the lines by which the header includes itself for a kernel."""
+    lines = [f"#define UP_{key} {value}" for key, value in kernel.constants.items()]
+    return "\n".join(["", *lines, "#include UPLIFT_FILE"])
 
 
 def _kernel() -> str:
     """Return the lookup of exported programs, whose functions have the name of the
     kernel.
     """
-    lookup = read_source("cube.c").partition("${macros}\n")[2]
-    before, _, shaders = lookup.partition(SKIPPED)
-    after = shaders.partition("#endif\n")[2]
-    calls = read_source("cube_calls.c").partition(" */\n")[2]
-    calls = calls.rpartition("#if defined(__clang__)")[0]
-    text = (before + after).replace("${calls}", calls)
-    text = text.replace("up_number", "uplift_number")
-    text = re.sub(r"\bup_(\w+)", r"UP_NAME(\1)", text)
-    return text + read_source("runtime/kernel_end.c")
+    _, calls = read_calls("cube", ".c")
+    text = (read_source("cube.c") + calls).replace("up_number", "uplift_number")
+    return re.sub(r"\bup_(\w+)", r"UP_NAME(\1)", text)
 
 
-def _words_of_hash(words: Iterable[int]) -> str:
-    """Format the constants of SHA-256, a few on a line."""
-    texts = [f"0x{word:08x}" for word in words]
+def _hash_words(primes: Sequence[int], degree: int) -> str:
+    """Format the first 32 bits of the fractions of roots, the constants of SHA-256
+    (FIPS 180-4, 4.2.2, 5.3.3), a few on a line.
+    """
+    roots = [Decimal(prime) ** (1 / Decimal(degree)) for prime in primes]
+    texts = [f"0x{int(root % 1 * 2**32):08x}" for root in roots]
     rows = [texts[first : first + PER_LINE] for first in range(0, len(texts), PER_LINE)]
     return ",\n".join("    " + ", ".join(row) for row in rows)
 
 
-def _primes(count: int) -> list[int]:
-    primes: list[int] = []
-    number = 2
-    while len(primes) < count:
-        if all(number % prime for prime in primes):
-            primes.append(number)
-        number += 1
-    return primes
-
-
-def _root_fraction(number: int, degree: int) -> int:
-    """Return the first 32 bits of the fraction of a root (FIPS 180-4, 4.2.2, 5.3.3)."""
-    scaled = number << 32 * degree
-    root = round(number ** (1 / degree) * 2**32)
-    while root**degree > scaled:
-        root -= 1
-    while (root + 1) ** degree <= scaled:
-        root += 1
-    return root % 2**32
+def _is_prime(number: int) -> bool:
+    return all(number % divisor for divisor in range(2, number))

@@ -22,7 +22,7 @@ from uplift.colorimetry.delta_e import (
 from uplift.colorimetry.sensor import Light, Sensor
 from uplift.common.arrays import Array
 from uplift.extras.looks.bounded_least_squares import solve_bounded
-from uplift.fit.entries import FittedEntries, fit_entries, join_entries
+from uplift.fit.entries import FittedEntries, fit_entries
 from uplift.fit.problem import Problem
 from uplift.fit.solver import LeastChange
 from uplift.models.model import evaluate
@@ -165,3 +165,10 @@ def _fit_design(problem: Problem, goal: LookGoal, design: Array) -> FittedEntrie
         if (goal.delta_e(answer) <= goal.delta_e(design) + REACHED).all():
             break
     return fitted
+
+
+def join_entries(*parts: FittedEntries) -> FittedEntries:
+    """Put entries after one another."""
+    return FittedEntries(
+        *(np.concatenate(columns) for columns in zip(*parts, strict=True))
+    )

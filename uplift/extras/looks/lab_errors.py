@@ -8,7 +8,6 @@ from uplift.colorimetry.delta_e import lab, rgb_to_lab
 from uplift.colorimetry.likely_errors import (
     ExpectedError,
     learn_radii,
-    mahalanobis,
 )
 from uplift.colorimetry.sensor import Light
 from uplift.common.arrays import Array
@@ -76,3 +75,12 @@ def lab_errors_from(data: CubeData, light: Light, known: Evidence) -> LabErrors:
     distances = mahalanobis(covariance[:, 1:, 1:], differences[0][:, 1:])
     (radius,) = learn_radii(distances, [(LIKELY, NORMAL_RADIUS)], components=2)
     return LabErrors(data, expected, radius)
+
+
+def mahalanobis(covariance: Array, difference: Array) -> Array:
+    """Mahalanobis distances (n,) of differences (n, d) by covariances (n, d, d), which
+    may be singular.
+    """
+    values, axes = np.linalg.eigh(covariance)
+    along = np.einsum("nij,ni->nj", axes, difference)
+    return np.sqrt((along**2 / np.maximum(values, np.finfo(float).tiny)).sum(axis=1))

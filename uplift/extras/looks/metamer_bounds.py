@@ -14,17 +14,17 @@ import numpy as np
 
 from uplift.colorimetry.delta_e import delta_e_2000, lab
 from uplift.colorimetry.gamut import SRGB, conversion
-from uplift.colorimetry.object_colours import solid, solid_volume
+from uplift.colorimetry.object_colours import BLOCK, solid
 from uplift.colorimetry.sensor import Light, Sensor, in_unit_cube
-from uplift.common.arrays import Array, Indices, Mask
+from uplift.common.arrays import Array, Indices, Mask, blocks
 from uplift.common.errors import ColourError
 from uplift.cube.data import CubeData
+from uplift.extras.colour.outside import reflectance_anywhere
 from uplift.extras.looks import mesh, mismatch
 from uplift.extras.looks.lab_errors import LabErrors, lab_errors
 from uplift.lattice.lattice import Lattice
 from uplift.lookup.cube import Cube
 from uplift.lookup.interpolate import spectra
-from uplift.lookup.outside import reflectance_anywhere
 
 NODES = Lattice(np.linspace(0, 1, 5) ** 2)
 """Nodes of linear sRGB, also for wide gamuts, whose ends no reflectance has."""
@@ -188,3 +188,15 @@ def _extremes(sensor: Sensor, light: Light, rgb: Array) -> Array:
     with contextlib.suppress(ColourError):
         xyz[real] = mismatch.mismatch_volumes(sensor, light, rgb[real], 0).xyz
     return xyz
+
+
+def solid_volume(matrix: Array) -> float:
+    """Compute the volume of the object-colour solid of three responses (3, N).
+
+    The zonotope consists of a parallelepiped for each triple of segments; each pair of
+    segments takes part in those of all third ones.
+    """
+    first, second = np.triu_indices(matrix.shape[1], k=1)
+    normals = np.cross(matrix.T[first], matrix.T[second])
+    parts = (normals[block] for block in blocks(len(normals), BLOCK))
+    return float(sum(np.abs(part @ matrix).sum() for part in parts) / 3)

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from uplift.colorimetry.delta_e import rgb_to_lab
 from uplift.colorimetry.object_colours import solid
 from uplift.colorimetry.observer import display_sensors
 from uplift.colorimetry.sensor import Sensor
@@ -15,7 +16,13 @@ from uplift.common.arrays import Array
 from uplift.common.errors import LookError, UpliftError, UpliftWarning, warn
 from uplift.cube.data import AtlasTable
 from uplift.extras.colour.srgb import hex_codes, parse_colour
-from uplift.extras.looks.design import MET, LookGoal, design_reflectance, fit_designs
+from uplift.extras.looks.design import (
+    MET,
+    LookGoal,
+    design_reflectance,
+    fit_designs,
+    join_entries,
+)
 from uplift.extras.looks.look import (
     Look,
     LooksLike,
@@ -24,8 +31,9 @@ from uplift.extras.looks.look import (
     format_rgb,
     look_error,
 )
-from uplift.fit.entries import MAX_STEPS, join_entries
-from uplift.fit.prior import Prior
+from uplift.fit.entries import MAX_STEPS, FittedEntries
+from uplift.fit.kriging import DEFAULT, krige
+from uplift.fit.prior import Prior, deviations_of
 from uplift.fit.problem import Problem
 from uplift.fit.solver import solve_in_numpy
 from uplift.models.model import Model, evaluate
@@ -35,6 +43,8 @@ SAME_CODE = 0.5
 """Colours whose 8-bit codes differ by at most this are the same: a query of one would
 return the other.
 """
+LOOK_VARIANCE = 0.01
+"""Variance of the noise of a look relative to that of entries."""
 DIGITS = 6
 """Decimals of recorded colours and distances."""
 
@@ -100,7 +110,7 @@ class LookTargets:
         return (
             replace(self, goals=goals, designs=designs),
             constraints,
-            prior.with_entries(at_nodes, len(self.looks)),
+            prior_with_looks(prior, at_nodes, len(self.looks)),
         )
 
     def describe(
@@ -293,3 +303,29 @@ def _warn_of_worst(
     if len(missed) > 1:
         text += f", and {len(missed) - 1} other looks are missed by less"
     warn(UpliftWarning(text, code=code, hint=hint, path=look.path))
+
+
+def prior_with_looks(prior: Prior, entries: FittedEntries, looks: int) -> Prior:
+    """Return the prior of entries whose last ones are looks, with the same kernel and
+    standard errors.
+
+    Looks are nearly certain: see `LOOK_VARIANCE`.
+    """
+    measured = len(entries.rgb) - looks
+    # Of the same entries in any order, sums round alike.
+    order = np.lexsort([*entries.rgb.T, np.arange(len(entries.rgb)) >= measured])
+    deviations, _ = deviations_of(prior.model, prior.base, entries.rows(order))
+    kernel = DEFAULT
+    variances = np.zeros(0)
+    trust = 1.0
+    if prior.kriging is not None:
+        kernel = prior.kriging.kernel
+        variances = prior.kriging.variances
+        trust = prior.kriging.trust
+    variances = np.append(variances, np.full(looks, LOOK_VARIANCE))
+    locations = rgb_to_lab(prior.sensor, entries.rgb[order])
+    kriging, _ = krige(locations, deviations, kernel, variances)
+    surprise = prior.surprise
+    if surprise is not None:
+        surprise = np.append(surprise, np.zeros(looks))
+    return replace(prior, kriging=replace(kriging, trust=trust), surprise=surprise)

@@ -20,10 +20,10 @@ from uplift.common.errors import (
 )
 from uplift.extras.colour.srgb import decode
 from uplift.extras.emission.lookup import EmissionTable, load_emission
+from uplift.extras.images.counts import Counts
+from uplift.extras.images.exr_file import is_exr
 from uplift.extras.mitsuba import texels
-from uplift.extras.texture.colours import Counts
-from uplift.extras.texture.emission import prepare_lights
-from uplift.extras.texture.exr_file import is_exr
+from uplift.extras.texture.emission import light_reader
 from uplift.lookup.cube import Cube, load
 from uplift.models.model import evaluate
 
@@ -108,7 +108,7 @@ def _reflectance(props: Any, rgb: Array, wavelengths: Array) -> Array:
     method = str(props.get("out_of_gamut", "error"))
     if cube.data.outside_boxes.find(rgb[None]).rows.size:
         uplifter = texels.prepare_texels(cube, method, of_entries=True)
-        (_, multipliers), _ = uplifter.convert(rgb[None].astype(np.float32))
+        _, multipliers, _ = uplifter.numbers(rgb[None].astype(np.float32))
         model = cube.data.atlas.spectra.model
         return evaluate(model, multipliers.astype(float), wavelengths)[0]
     mapped = map_to_gamut(rgb, cube.data.sensor, method)
@@ -157,30 +157,27 @@ def _texels(props: Any, *, is_light: bool) -> texels.Texels:
     rgb: Values
     read_warnings: tuple[UpliftWarning, ...] = ()
     counts = Counts()
-    method = "clip"
     if is_light:
         table = _table(props)
         if path is None:
             rgb = _linear(decode, props["bitmap"])
         else:
-            rgb, counts, read_warnings = texels.read_colours(
-                path, prepare_lights(table, threads=texels.THREADS)
-            )
+            rgb, counts, read_warnings = texels.read_colours(path, light_reader(table))
         spectra = texels.light_texels(table, rgb.astype(float))
     else:
         cube = _cube(props)
-        method = str(props.get("out_of_gamut", method))
+        method = str(props.get("out_of_gamut", "clip"))
         uplifter = texels.prepare_texels(cube, method)
         if path is not None and path.is_file() and is_exr(path):
-            rgb, counts, read_warnings = texels.read_colours(path, uplifter)
+            rgb, counts, read_warnings = texels.read_colours(path, uplifter.reader)
         else:
             bitmap = props["bitmap"] if path is None else mitsuba.Bitmap(str(path))
-            rgb, counts = uplifter.mapped(
+            rgb, counts = uplifter.reader.mapped(
                 _linear(lambda codes: cube.decode(255 * codes), bitmap)
             )
         spectra, converted = texels.uplift_texels(uplifter, rgb)
         counts += converted
-    for warning in (*read_warnings, *counts.warnings(method, path)):
+    for warning in (*read_warnings, *counts.warnings(path)):
         warn(warning)
     return spectra
 

@@ -15,15 +15,18 @@ import numpy as np
 from uplift.common.arrays import Array, Floats, Values
 from uplift.common.errors import TextureError, UpliftError, UpliftWarning, unknown_name
 from uplift.extras.emission.lookup import EmissionTable
-from uplift.extras.texture import exr_file
-from uplift.extras.texture.channels import coloured_parts
-from uplift.extras.texture.colours import Counts, space_warnings
-from uplift.extras.texture.image import Image, open_image
-from uplift.extras.texture.uplifter import Converter, Multipliers, Uplifter, prepare
+from uplift.extras.images import exr_file
+from uplift.extras.images.channels import coloured_parts
+from uplift.extras.images.counts import Counts
+from uplift.extras.images.image import Image, open_image
+from uplift.extras.images.reader import Reader
+from uplift.extras.texture.encodings import Multipliers
+from uplift.extras.texture.uplifter import Uplifter, prepare
 from uplift.lookup.blocks import blockwise
 from uplift.lookup.cube import Cube
+from uplift.models.duality import blended_multipliers
 from uplift.models.model import Model, evaluate
-from uplift.models.moments import Moments, multipliers_of_rounded
+from uplift.models.moments import Moments
 from uplift.models.registry import from_description
 
 MEAN_WAVELENGTHS = np.arange(380.0, 781.0, 25.0)
@@ -44,6 +47,10 @@ Fichet et al. 2021.
 """
 WAVELENGTH = re.compile(r"(\d+)(?:,(\d+))?nm")
 NUMBERED = re.compile(r"(moment|multiplier)\.\d+")
+GREY_WEIGHTS = (1e-8, 1e-6, 1e-4, 1e-3, 1e-2)
+"""Weights of grey that rounded moments are mixed with, in turn, until they are those of
+a reflectance.
+"""
 EVEN = 1e-3
 """Tolerance of equidistant wavelengths in nm."""
 
@@ -100,10 +107,11 @@ def uplift_texels(uplifter: Uplifter, rgb: Floats) -> tuple[Texels, Counts]:
     colours = rgb.reshape(-1, 3).astype(float)
     inside = data.entry_boxes.find(colours.clip(0, 1)).rows
     if inside.size or data.outside_boxes.find(colours).rows.size:
-        uplifter = prepare_texels(uplifter.cube, uplifter.out_of_gamut, of_entries=True)
-    assert uplifter.model is not None
-    (_, multipliers), counts = uplifter.convert(rgb)
-    return model_texels(uplifter.model, multipliers), counts
+        method = uplifter.reader.out_of_gamut
+        uplifter = prepare_texels(uplifter.cube, method, of_entries=True)
+    assert uplifter.pixels.model is not None
+    _, multipliers, counts = uplifter.numbers(rgb)
+    return model_texels(uplifter.pixels.model, multipliers), counts
 
 
 def model_texels(model: Model, multipliers: Values) -> Texels:
@@ -215,7 +223,7 @@ def read_texels(path: Path) -> Texels | None:
 
 
 def read_colours(
-    path: Path, converter: Converter
+    path: Path, reader: Reader
 ) -> tuple[Floats, Counts, tuple[UpliftWarning, ...]]:
     """Read linear RGB (h, w, 3) of an image as `uplift.extras.texture.convert` does,
     with counts and warnings of its space.
@@ -225,17 +233,15 @@ def read_colours(
     """
     with open_image(path) as image:
         part, colours = coloured_parts(image)[0]
-        channels = converter.colour_channels(colours)
-        decode = converter.decoder(part)
-        bands, counts = zip(
-            *(decode(channels.straight(rows)) for _, rows in image.bands(part)),
-            strict=True,
-        )
-        return (
-            np.concatenate(bands),
-            sum(counts, Counts()),
-            space_warnings(image, converter.sensor),
-        )
+        channels = reader.channels(colours)
+        decode = reader.decoder(part)
+        counts = Counts()
+        bands = []
+        for _, rows in image.bands(part):
+            rgb, changed = decode(channels.straight(rows))
+            bands.append(rgb)
+            counts += changed
+        return np.concatenate(bands), counts, reader.warnings(image)
 
 
 def _spectral_channels(channels: tuple[str, ...], quantity: str) -> dict[float, str]:
@@ -290,7 +296,8 @@ def _model(description: str, count: int) -> Model:
 
 
 def _multipliers(model: Moments, moments: Array) -> Array:
-    multipliers, valid = multipliers_of_rounded(model, moments.astype(float))
+    # Rounding can move moments of saturated colours out of the moment space.
+    multipliers, valid = blended_multipliers(moments.astype(float), GREY_WEIGHTS)
     if not valid.all():
         raise TextureError(
             "the moments of a texel belong to no reflectance in [0, 1]",

@@ -21,7 +21,7 @@ from markupsafe import Markup
 from uplift.common.text import json_escapes, printable
 from uplift.extras.pages import format as formats
 
-__all__ = ["Markup", "Tooltip", "render", "resource"]
+__all__ = ["Markup", "Tooltip", "environment", "render", "resource"]
 
 
 class Tooltip(TypedDict):
@@ -41,7 +41,7 @@ class Tooltip(TypedDict):
 
 def render(template: str, /, **values: Any) -> str:
     """Render a template as text that needs no other file."""
-    return _environment().get_template(template).render(**values)
+    return environment().get_template(template).render(**values)
 
 
 def resource(*paths: str) -> Markup:
@@ -64,7 +64,10 @@ def content_security_policy(script: str) -> str:
 
 
 @cache
-def _environment() -> jinja2.Environment:
+def environment() -> jinja2.Environment:
+    """Return what templates are rendered with, for those outside the package as
+    well.
+    """
     environment = jinja2.Environment(
         loader=jinja2.PackageLoader("uplift", ""),
         autoescape=True,

@@ -1,12 +1,4 @@
-// CIE L*a*b* and CIEDE2000 (Sharma, Wu & Dalal 2005), as uplift/colorimetry/delta_e.py.
-const toLab = (xyz, white) => {
-  const [x, y, z] = xyz.map((value, i) => {
-    const t = value / white[i];
-    return t > 216 / 24389 ? Math.cbrt(t) : (t * 24389 / 27 + 16) / 116;
-  });
-  return [116 * y - 16, 500 * (x - y), 200 * (y - z)];
-};
-
+// CIEDE2000 (Sharma, Wu & Dalal 2005), as uplift/colorimetry/delta_e.py.
 const degrees = Math.PI / 180;
 const weight7 = chroma => Math.sqrt(chroma ** 7 / (chroma ** 7 + 25 ** 7));
 

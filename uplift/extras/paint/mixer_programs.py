@@ -5,7 +5,6 @@ them become the name of the program.
 """
 
 import base64
-import re
 from collections.abc import Callable
 from pathlib import Path
 from string import Template
@@ -23,7 +22,12 @@ from uplift.cube.data import CubeData
 from uplift.cube.file import digest
 from uplift.extras.colour.srgb import decode, encode
 from uplift.extras.export.outputs import output_files
-from uplift.extras.export.program import comment, identifier, literal, read_source
+from uplift.extras.export.source import (
+    comment,
+    literal,
+    name_program,
+    read_source,
+)
 from uplift.extras.files.outputs import check_outputs
 from uplift.extras.paint.bands import BANDS
 from uplift.extras.paint.rgb_mixer import DIM, RgbMixer, make_mixer
@@ -91,9 +95,7 @@ def write_mixer(
     mixer = make_mixer(cube, res)
     words = WORDS[style](mixer) | _facts(cube.data, mixer, files[0])
     text = Template(read_source(SOURCES[style])).substitute(words)
-    name = identifier(files[0].stem)
-    text = re.sub(r"\bup_", f"{name}_", text)
-    text = re.sub(r"\bUP_", f"{name.upper()}_", text)
+    text = name_program(text, files[0].stem)
     for table in files[1:]:
         with atomic_write(table, force=force) as temporary:
             temporary.write_bytes(texture(mixer).tobytes())
@@ -124,7 +126,6 @@ def _c_words(mixer: RgbMixer) -> Words:
     for coefficient in coefficients[-2::-1]:
         curve = f"({curve} * v + {literal(coefficient)})"
     return {
-        "loops": read_source("loops.c"),
         "numbers": "".join(", ".join(map(str, node)) + ",\n" for node in nodes),
         "units": ", ".join(map(literal, mixer.units[[0, BANDS]].tolist())),
         "to_rgb": "".join(f"    {{{_listed(row)}}},\n" for row in mixer.to_rgb),

@@ -50,7 +50,7 @@ function film(members, parts, thickness, ground) {
 }
 
 const xyzOf = (reflectances, light) => light.xyz.map(row => dot(row, reflectances));
-const labOf = reflectances => toLab(xyzOf(reflectances, daylight), daylight.white);
+const labOf = reflectances => xyzToLab(xyzOf(reflectances, daylight), daylight.white);
 const codesOf = (reflectances, light) =>
   multiply(light.toRgb, xyzOf(reflectances, light)).map(value => Math.round(255 * encode(Math.min(Math.max(value, 0), 1))));
 const hexOf = (reflectances, light = daylight) => hexOfCodes(codesOf(reflectances, light));

@@ -1,7 +1,7 @@
 // The layers of each picture lie on top of one another: two methods divided by a line, or the map of their difference.
-const balanced = JSON.parse(document.getElementById("balanced").textContent);  // by light, as the switch was left
+const { balanced } = JSON.parse(byId("numbers").textContent);  // by light, as the switch was left
 const form = document.querySelector(".choices");
-const [first, second, map, balance] = ["first", "second", "map", "balance"].map(id => document.getElementById(id));
+const [first, second, map, balance] = ["first", "second", "map", "balance"].map(byId);
 
 function choose(event) {
   const light = form.elements.light.value;
@@ -39,15 +39,10 @@ for (const view of document.querySelectorAll(".view")) {
     move();
   };
   split.addEventListener("input", move);
-  view.addEventListener("pointerdown", event => {
-    if (view.classList.contains("map")) return;
-    view.setPointerCapture(event.pointerId);
-    drag(event);
-  });
-  view.addEventListener("pointermove", event => event.buttons && view.hasPointerCapture(event.pointerId) && drag(event));
+  onDrag(view, event => view.classList.contains("map") || drag(event));
   move();
 }
 form.addEventListener("change", choose);
 form.addEventListener("submit", event => event.preventDefault());
 choose();
-document.querySelector("main").setAttribute("aria-busy", "false");
+ready();

@@ -2,11 +2,11 @@
 (docs/textures.md).
 """
 
-import contextlib
 import json
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Sequence
+from dataclasses import replace
 from itertools import product
+from typing import Any
 
 import numpy as np
 
@@ -14,52 +14,19 @@ from uplift.colorimetry.gamut import conversion
 from uplift.colorimetry.illuminants import Illuminant
 from uplift.colorimetry.observer import display_sensors
 from uplift.common.arrays import Floats
-from uplift.extras.colour.spaces import find_space
 from uplift.extras.images import exr
-from uplift.extras.texture.colours import Counts, source_space
-from uplift.extras.texture.image import Image, Part
-from uplift.extras.texture.uplifter import (
+from uplift.extras.images.channels import channel_names
+from uplift.extras.images.converter import (
+    Band,
     Converted,
-    Converter,
-    ConvertRows,
-    Sampler,
-    channel_names,
+    ImageConverter,
+    RowConverter,
 )
+from uplift.extras.images.counts import Counts
+from uplift.extras.images.image import Part
+from uplift.extras.images.reader import SurfaceReader
 from uplift.lookup.cube import Cube
 from uplift.lookup.node_table import prepare_products
-
-
-@dataclass(frozen=True, eq=False)
-class Relighter(Converter):
-    """A converter to colours under L lights, by ``sample`` from linear RGB (…, 3) to
-    (…, 3 L) of the sensor.
-    """
-
-    sample: Sampler
-
-    def part_header(self, part: Part) -> dict[str, object]:
-        space = source_space(part, self.sensor, self.space)
-        gamut = self.sensor if space is None else space.gamut
-        return {"chromaticities": exr.chromaticities(gamut)}
-
-    @contextlib.contextmanager
-    def opened(self, image: Image) -> Iterator[ConvertRows]:
-        yield lambda part, first, rgb: (
-            (self._to_space(part, self.sample(rgb)),),
-            Counts(),
-        )
-
-    def convert(self, rgb: Floats) -> Converted:
-        return (self.sample(rgb),), Counts()
-
-    def _to_space(self, part: Part, lit: Floats) -> Floats:
-        """Convert linear RGB (…, 3 L) of the sensor to the space of a part."""
-        space = source_space(part, self.sensor, self.space)
-        if space is None or space.matrix_to(self.sensor) is None:
-            return lit
-        to_space = np.linalg.inv(conversion(space.gamut, self.sensor))
-        colours = lit.reshape(-1, 3) @ to_space.T.astype(lit.dtype)
-        return colours.reshape(lit.shape)
 
 
 def prepare_relighter(
@@ -71,7 +38,7 @@ def prepare_relighter(
     out_of_gamut: str = "clip",
     space: str | None = None,
     threads: int = 2,
-) -> Relighter:
+) -> RowConverter:
     """Prepare a cube for images under other lights.
 
     R, G and B of the result are colours under the first light. Each further light is a
@@ -91,7 +58,7 @@ def prepare_relighter(
 
     Returns
     -------
-    Relighter
+    RowConverter
         The converter to pass to `convert`.
 
     Raises
@@ -102,6 +69,9 @@ def prepare_relighter(
         A light or the RGB space is unknown.
     """
     sensor = cube.data.sensor
+    reader = SurfaceReader(
+        sensor=sensor, encoding=encoding, space=space, out_of_gamut=out_of_gamut
+    )
     screens = display_sensors(
         lights, sensor.observer, *sensor.range, space=sensor.space
     )
@@ -118,24 +88,36 @@ def prepare_relighter(
         "out_of_gamut": out_of_gamut,
     }
     settings |= {} if adapt else {"adapt": False}
-    matrices = [screen.matrix for screen in screens]
-    header = {
-        **exr.attributes(cube.data),
-        "uplift.texture": json.dumps(settings),
-        "uplift.lights": ", ".join(names),
-    }
-    return Relighter(
-        sensor,
-        "half",
-        encoding,
-        out_of_gamut,
-        tuple(map(".".join, product(layers, "RGB"))),
-        header,
-        sample=prepare_products(
-            cube.data,
-            cube.wavelengths,
-            np.concatenate(matrices),
-            threads,
-        ),
-        space=None if space is None else find_space(space),
+    matrix = np.concatenate([screen.matrix for screen in screens])
+    sample = prepare_products(cube.data, cube.wavelengths, matrix, threads)
+
+    def rows(band: Band) -> Converted:
+        lit = _to_space(reader, band.part, sample(band.rgb))
+        return (band.weighted(lit),), Counts()
+
+    def part_header(part: Part) -> dict[str, Any]:
+        space = reader.source_space(part)
+        gamut = sensor if space is None else space.gamut
+        return {"chromaticities": exr.chromaticities(gamut)}
+
+    return RowConverter(
+        reader=reader,
+        depth="half",
+        channels=tuple(map(".".join, product(layers, "RGB"))),
+        header={
+            **exr.attributes(cube.data),
+            "uplift.texture": json.dumps(settings),
+            "uplift.lights": ", ".join(names),
+        },
+        to_rows=ImageConverter(rows, part_header),
     )
+
+
+def _to_space(reader: SurfaceReader, part: Part, lit: Floats) -> Floats:
+    """Convert linear RGB (…, 3 L) of the sensor to the space of a part."""
+    space = reader.source_space(part)
+    if space is None or space.matrix_to(reader.sensor) is None:
+        return lit
+    to_space = np.linalg.inv(conversion(space.gamut, reader.sensor))
+    colours = lit.reshape(-1, 3) @ to_space.T.astype(lit.dtype)
+    return colours.reshape(lit.shape)

@@ -7,10 +7,10 @@ import numpy as np
 from uplift.colorimetry.gamut import SRGB
 from uplift.common.arrays import Array, StrPath
 from uplift.common.errors import ColourError, TextureError
+from uplift.extras.images.channels import coloured_parts
+from uplift.extras.images.image import open_image
 from uplift.extras.report.answers import read_answers
 from uplift.extras.report.conformance_chart import COLUMNS, COUNT, ROWS, Chart
-from uplift.extras.texture.channels import coloured_parts
-from uplift.extras.texture.image import open_image
 
 SPECTRA = (400.0, 700.0, 10.0)
 """First and last wavelength and step of tables of spectra in nm."""

@@ -17,10 +17,10 @@ from uplift.colorimetry.observer import light, on_range
 from uplift.colorimetry.sensor import Light, in_unit_cube
 from uplift.common.arrays import Array, Indices, Values
 from uplift.cube.data import CubeData
+from uplift.extras.colour.outside import MAPPING, reflectance_anywhere
 from uplift.extras.report.comparison import SpectraComparison, compare_spectra
 from uplift.lookup.cube import Cube, load
 from uplift.lookup.interpolate import lattice_spectra
-from uplift.lookup.outside import MAPPING, reflectance_anywhere
 from uplift.lookup.refine import refine_to_rgb
 from uplift.models.model import evaluate
 from uplift.models.sigmoid import Sigmoid
@@ -133,7 +133,7 @@ def entry_errors(
     )
     if (rows := entries.rows) is not None:
         table = data.atlas.with_outside
-        lattice = lattice_spectra(data, inside, at)
+        lattice = lattice_spectra(data.model, data.lattice, data.points, inside, at)
         is_outside = rows >= len(data.atlas.names)
         predicted = errors.predicted
         if predicted is not None:

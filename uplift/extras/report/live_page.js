@@ -2,17 +2,15 @@
 // of the pixels are interpolated once per image and light, and a frame only mixes the two.
 const { columns, rows, points, wavelengths, lights, entries } = JSON.parse(byId("numbers").textContent);
 const canvas = byId("view");
-const gl = canvas.getContext("webgl2", { preserveDrawingBuffer: true });
+const gl = webgl(canvas);
 const complain = text => { byId("problem").textContent = text; };
-if (!gl || !gl.getExtension("EXT_color_buffer_float")) {
+if (!gl) {
   complain("This page needs WebGL 2 with floating-point textures.");
   throw new Error("no WebGL 2");
 }
 const SIZE = Math.min(1024, gl.getParameter(gl.MAX_TEXTURE_SIZE));
 const GROUPS = wavelengths.length / 4;
 const ACROSS = 1024;
-const vertex = `#version 300 es
-void main() { gl_Position = vec4(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0, 0.0, 1.0); }`;
 const kernel = byId("kernel").textContent;
 const nodes = `#version 300 es
 ${kernel}
@@ -46,9 +44,7 @@ ${kernel}
 uniform sampler2D image, nodes_a, nodes_b;
 layout(location = 0) out vec4 first;
 layout(location = 1) out vec4 second;
-vec3 linear(vec3 code) {
-  return mix(code / 12.92, pow((code + 0.055) / 1.055, vec3(2.4)), step(0.04045, code));
-}
+${GLSL_SRGB}
 void add(int number, float weight) {
   ivec2 place = ivec2(number % ${ACROSS}, number / ${ACROSS});
   first += weight * texelFetch(nodes_a, place, 0);
@@ -76,13 +72,7 @@ uniform float share, exposure, split;
 uniform vec2 cursor;
 uniform int height;
 out vec4 colour;
-vec3 linear(vec3 code) {
-  return mix(code / 12.92, pow((code + 0.055) / 1.055, vec3(2.4)), step(0.04045, code));
-}
-vec3 encode(vec3 rgb) {
-  rgb = clamp(rgb, 0.0, 1.0);
-  return mix(12.92 * rgb, 1.055 * pow(rgb, vec3(1.0 / 2.4)) - 0.055, step(0.0031308, rgb));
-}
+${GLSL_SRGB}
 void main() {
   ivec2 place = ivec2(gl_FragCoord.x, float(height) - gl_FragCoord.y);
   vec3 plain = linear(texelFetch(image, place, 0).rgb) * mix(white_a, white_b, share);
@@ -100,44 +90,14 @@ uniform vec4 at[${GROUPS}];
 out vec4 found;
 void main() { found = cube_reflectances(rgb, at[int(gl_FragCoord.x)]); }`;
 
-function compile(fragment) {
-  const program = gl.createProgram();
-  for (const [kind, text] of [[gl.VERTEX_SHADER, vertex], [gl.FRAGMENT_SHADER, fragment]]) {
-    const shader = gl.createShader(kind);
-    gl.shaderSource(shader, text);
-    gl.compileShader(shader);
-    if (!gl.getShaderParameter(shader, gl.COMPILE_STATUS)) throw new Error(gl.getShaderInfoLog(shader));
-    gl.attachShader(program, shader);
-  }
-  gl.linkProgram(program);
-  if (!gl.getProgramParameter(program, gl.LINK_STATUS)) throw new Error(gl.getProgramInfoLog(program));
-  return { program, at: name => gl.getUniformLocation(program, name) };
-}
-
-function texture(unit, format, width, height, kind, values) {
-  gl.activeTexture(gl.TEXTURE0 + unit);
-  const made = gl.createTexture();
-  gl.bindTexture(gl.TEXTURE_2D, made);
-  gl.texImage2D(gl.TEXTURE_2D, 0, format, width, height, 0, gl.RGBA, kind, values);
-  gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MIN_FILTER, gl.NEAREST);
-  gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MAG_FILTER, gl.NEAREST);
-  return made;
-}
-
 // Units: 0 table, 1 image, 2 and 3 the image under each light, 4 a spectrum, 5 and 6 the nodes under each light.
 const bytes = Uint8Array.from(atob(byId("table").textContent), letter => letter.charCodeAt(0));
-texture(0, gl.RGBA32F, columns, rows, gl.FLOAT, new Float32Array(bytes.buffer));
-const programs = { nodes: compile(nodes), relit: compile(relit), shown: compile(shown), spectrum: compile(spectrum) };
+texture(gl, 0, gl.RGBA32F, columns, rows, gl.FLOAT, new Float32Array(bytes.buffer));
+const programs = { nodes: compile(gl, nodes), relit: compile(gl, relit), shown: compile(gl, shown), spectrum: compile(gl, spectrum) };
 const frames = { nodes: gl.createFramebuffer(), relit: gl.createFramebuffer(), spectrum: gl.createFramebuffer() };
-const attach = (frame, textures) => {
-  gl.bindFramebuffer(gl.FRAMEBUFFER, frame);
-  textures.forEach((each, k) =>
-    gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0 + k, gl.TEXTURE_2D, each, 0));
-  gl.drawBuffers(textures.map((_, k) => gl.COLOR_ATTACHMENT0 + k));
-};
 const DOWN = Math.ceil(points / ACROSS);
-attach(frames.nodes, [5, 6].map(unit => texture(unit, gl.RGBA32F, ACROSS, DOWN, gl.FLOAT, null)));
-attach(frames.spectrum, [texture(4, gl.RGBA32F, GROUPS, 1, gl.FLOAT, null)]);
+attach(gl, frames.nodes, [5, 6].map(unit => texture(gl, unit, gl.RGBA32F, ACROSS, DOWN, gl.FLOAT, null)));
+attach(gl, frames.spectrum, [texture(gl, 4, gl.RGBA32F, GROUPS, 1, gl.FLOAT, null)]);
 
 const source = new OffscreenCanvas(1, 1).getContext("2d", { willReadFrequently: true });
 const state = { width: 1, height: 1, pixels: null, made: [], place: [0, 0] };
@@ -154,11 +114,11 @@ function show(picture) {
   state.made.forEach(each => gl.deleteTexture(each));
   const { width, height } = state;
   state.made = [
-    texture(1, gl.RGBA, width, height, gl.UNSIGNED_BYTE, new Uint8Array(state.pixels.buffer)),
-    texture(2, gl.RGBA32F, width, height, gl.FLOAT, null),
-    texture(3, gl.RGBA32F, width, height, gl.FLOAT, null),
+    texture(gl, 1, gl.RGBA, width, height, gl.UNSIGNED_BYTE, new Uint8Array(state.pixels.buffer)),
+    texture(gl, 2, gl.RGBA32F, width, height, gl.FLOAT, null),
+    texture(gl, 3, gl.RGBA32F, width, height, gl.FLOAT, null),
   ];
-  attach(frames.relit, state.made.slice(1));
+  attach(gl, frames.relit, state.made.slice(1));
   byId("split").max = width;
   byId("split").value = Math.round(width / 2);
   relight();
@@ -210,8 +170,6 @@ function draw() {
   byId("exposure-text").value = `${byId("exposure").value} EV`;
 }
 
-const linear = code => (code <= 0.04045 ? code / 12.92 : ((code + 0.055) / 1.055) ** 2.4);
-
 function reflectances(rgb) {
   const { program, at } = programs.spectrum;
   gl.useProgram(program);
@@ -233,10 +191,8 @@ function inspect(x, y) {
   state.place = [x, y];
   const start = 4 * (y * state.width + x);
   const codes = [...state.pixels.slice(start, start + 3)];
-  const g = reflectances(codes.map(code => linear(code / 255)));
-  const [low, high] = [wavelengths[0], wavelengths.at(-1)];
-  const place = (nm, value) => `${(8 + (304 * (nm - low)) / (high - low)).toFixed(1)} ${(104 - 96 * value).toFixed(1)}`;
-  byId("curve").setAttribute("d", "M" + wavelengths.map((nm, k) => place(nm, g[k])).join("L"));
+  const g = reflectances(codes.map(code => decode(code / 255)));
+  byId("curve").setAttribute("d", curve(wavelengths, g));
   const hex = hexOfCodes(codes);
   byId("pixel").textContent = `${x}, ${y}: ${hex}`;
   byId("swatch").style.background = hex;
@@ -272,9 +228,10 @@ async function open(file) {
   }
 }
 
+const requestDraw = frameOf(draw);
 for (const id of ["light-a", "light-b"]) byId(id).addEventListener("change", relight);
 for (const id of ["mix", "split", "exposure", "balance"])
-  byId(id).addEventListener("input", () => requestAnimationFrame(draw));
+  byId(id).addEventListener("input", requestDraw);
 byId("file").addEventListener("change", event => event.target.files[0] && open(event.target.files[0]));
 document.addEventListener("dragover", event => event.preventDefault());
 document.addEventListener("drop", event => {
@@ -284,14 +241,12 @@ document.addEventListener("drop", event => {
 canvas.addEventListener("pointermove", ({ offsetX, offsetY }) => inspect(
   Math.floor((offsetX * state.width) / canvas.clientWidth),
   Math.floor((offsetY * state.height) / canvas.clientHeight)));
-const steps = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] };
-canvas.addEventListener("keydown", event => {
-  const step = steps[event.key], length = event.shiftKey ? 20 : 1;
-  if (!step) return;
-  event.preventDefault();
-  inspect(state.place[0] + length * step[0], state.place[1] + length * step[1]);
-  requestAnimationFrame(draw);
+onKey(canvas, (key, arrow, shift) => {
+  if (!arrow) return false;
+  const length = shift ? 20 : 1;
+  inspect(state.place[0] + length * arrow[0], state.place[1] + length * arrow[1]);
+  requestDraw();
 });
-for (const kind of ["focus", "blur"]) canvas.addEventListener(kind, () => requestAnimationFrame(draw));
+for (const kind of ["focus", "blur"]) canvas.addEventListener(kind, requestDraw);
 show(sample());
-document.querySelector("main").setAttribute("aria-busy", "false");
+ready();

@@ -61,7 +61,11 @@ def page(data: CubeData) -> str:
         numbers=numbers,
         kernel=Markup(program.replace("</", "< /")),
         table=base64.b64encode(image.astype("<f4").tobytes()).decode(),
-        script=resource("extras/pages/draw.js", "extras/report/live_page.js"),
+        script=resource(
+            "extras/pages/draw.js",
+            "extras/pages/webgl.js",
+            "extras/report/live_page.js",
+        ),
     )
 
 

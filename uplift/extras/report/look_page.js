@@ -1,17 +1,4 @@
-// Colours of reflectances: XYZ, L*a*b* and sRGB, as uplift/colorimetry computes them.
-const compress = t => (t > (6 / 29) ** 3 ? Math.cbrt(t) : (t * (29 / 6) ** 2) / 3 + 4 / 29);
-const expand = f => (f > 6 / 29 ? f ** 3 : (f - 4 / 29) * 3 * (6 / 29) ** 2);
-
-function xyzToLab(xyz, white) {
-  const [x, y, z] = xyz.map((value, k) => compress(value / white[k]));
-  return [116 * y - 16, 500 * (x - y), 200 * (y - z)];
-}
-
-function labToXyz([lightness, a, b], white) {
-  const y = (lightness + 16) / 116;
-  return [y + a / 500, y, y - b / 200].map((f, k) => expand(f) * white[k]);
-}
-
+// Colours of reflectances, as uplift/colorimetry computes them.
 // Rows of the derivative of a* and b* with respect to XYZ.
 function slopesOfAb(xyz, white) {
   const [x, y, z] = xyz.map((value, k) => 1 / (3 * Math.cbrt(Math.max(value / white[k], (6 / 29) ** 3)) ** 2 * white[k]));
@@ -153,7 +140,6 @@ function solveGoals(model, goals) {
 }
 // Drawing of the regions in a* and b*, and of the spectrum.
 const PLOT = { left: 38, right: 294, top: 6, bottom: 262 };
-const CURVE = { left: 8, right: 312, top: 8, bottom: 104 };
 const PIXELS = 96;
 const MIN_EXTENT = 5;
 const NEARLY = 0.999;
@@ -226,13 +212,6 @@ function drawAxes(scale) {
   return parts;
 }
 
-function curve(wavelengths, reflectance) {
-  const { left, right, top, bottom } = CURVE;
-  const step = (right - left) / (wavelengths.at(-1) - wavelengths[0]);
-  const points = reflectance.map((value, i) => [left + step * (wavelengths[i] - wavelengths[0]), bottom - (bottom - top) * value]);
-  return `M${pathOf(points)}`;
-}
-
 // A point, or where the segment from `inside` to it nearly leaves the polygon.
 function clampToPolygon(point, polygon, inside) {
   let share = 1;
@@ -260,16 +239,12 @@ const scales = lights.map((light, i) => scaleOf([...light.region, ...(light.like
 const middles = lights.map(({ region }) => [0, 1].map(axis => region.reduce((sum, point) => sum + point[axis], 0) / region.length));
 let q = numbers.basis[0].map(() => 0);
 let goals = new Map();
-let frame = 0;
 
 const codesOf = (light, reflectance) => toCodes(linearRgb(light, multiply(light.xyz, reflectance)), luminance);
 
-function requestFrame() {
-  frame ||= requestAnimationFrame(show);
-}
+const requestFrame = frameOf(show);
 
 function show() {
-  frame = 0;
   q = goals.size ? solveGoals(model, [...goals].map(([i, goal]) => ({ light: lights[i], goal }))) : q.map(() => 0);
   const reflectance = reflectanceOf(model, q);
   byId("curve").setAttribute("d", curve(wavelengths, reflectance));
@@ -332,35 +307,23 @@ function release(i) {
 }
 
 function follow(i, event) {
-  const matrix = byId(`region-${i}`).getScreenCTM().inverse();
-  const { x, y } = new DOMPoint(event.clientX, event.clientY).matrixTransform(matrix);
-  choose(i, scales[i].toAb([x, y]));
+  choose(i, scales[i].toAb(placeIn(byId(`region-${i}`), event)));
 }
 
-const DIRECTIONS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
-function press(i, event) {
-  if (event.ctrlKey || event.altKey || event.metaKey) return;
-  const direction = DIRECTIONS[event.key];
-  const step = event.shiftKey ? 5 : 0.5;
-  if (direction) {
+function press(i, key, arrow, shift) {
+  const step = shift ? 5 : 0.5;
+  if (arrow) {
     const from = goals.get(i) ?? labOf(lights[i], reflectanceOf(model, q)).slice(1);
-    choose(i, [0, 1].map(axis => from[axis] + step * direction[axis]));
-  } else if (["0", "Delete", "Backspace"].includes(event.key)) release(i);
-  else return;
-  event.preventDefault();
+    choose(i, [from[0] + step * arrow[0], from[1] - step * arrow[1]]);
+  } else if (["0", "Delete", "Backspace"].includes(key)) release(i);
+  else return false;
 }
 
 lights.forEach((light, i) => {
   const region = byId(`region-${i}`);
   drawRegion(i, light, scales[i], answers[i], luminance);
-  region.addEventListener("pointerdown", event => {
-    region.setPointerCapture(event.pointerId);
-    follow(i, event);
-  });
-  region.addEventListener("pointermove", event => {
-    if (region.hasPointerCapture(event.pointerId)) follow(i, event);
-  });
-  region.addEventListener("keydown", event => press(i, event));
+  onDrag(region, event => follow(i, event));
+  onKey(region, (...pressed) => press(i, ...pressed));
   byId(`release-${i}`).addEventListener("click", () => {
     release(i);
     region.focus();
@@ -382,4 +345,4 @@ byId("copy").addEventListener("click", async () => {
 });
 byId("base").setAttribute("d", curve(wavelengths, answer));
 show();
-document.querySelector("main").setAttribute("aria-busy", "false");
+ready();

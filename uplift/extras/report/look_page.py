@@ -70,7 +70,11 @@ def page(cube: Cube, found: Sequence[Bounds]) -> str:
             "lights": lights,
         }
         | {"rgb": written, "luminance": SRGB.rgb_to_xyz[1].tolist()},
-        script=resource("extras/pages/draw.js", "extras/report/look_page.js"),
+        script=resource(
+            "extras/pages/draw.js",
+            "extras/pages/lab.js",
+            "extras/report/look_page.js",
+        ),
     )
 
 

@@ -265,7 +265,7 @@ def _read_options(data: CubeData, path: StrPath) -> Options:
         raise _missing_provenance(path)
     try:
         options = Options(**recorded_options(data.provenance["options"]))
-        if is_camera_file(options.observer) and data.sensor.sensitivities is None:
+        if is_camera_file(str(options.observer)) and data.sensor.sensitivities is None:
             raise OptionError("the file of a camera without its sensitivities")
     except (TypeError, OptionError, UnknownNameError) as error:
         raise _unknown_options(error, path) from error

@@ -1,7 +1,10 @@
-from .colours import Counts as Counts
 from .conversion import Conversion as Conversion
 from .conversion import convert as convert
 from .emission import prepare_lights as prepare_lights
+from .encodings import PIXEL_ENCODINGS as PIXEL_ENCODINGS
+from .encodings import Moments as Moments
+from .encodings import Multipliers as Multipliers
+from .encodings import Spectrum as Spectrum
 from .mask import prepare_masked as prepare_masked
 from .photographs import ChartInPicture as ChartInPicture
 from .photographs import FurtherPicture as FurtherPicture
@@ -13,8 +16,4 @@ from .sequence import TextureSettings as TextureSettings
 from .sequence import convert_all as convert_all
 from .sequence import pending as pending
 from .several_lights import prepare_several_lights as prepare_several_lights
-from .uplifter import PIXEL_ENCODINGS as PIXEL_ENCODINGS
-from .uplifter import Moments as Moments
-from .uplifter import Multipliers as Multipliers
-from .uplifter import Spectrum as Spectrum
 from .uplifter import prepare as prepare

@@ -4,7 +4,7 @@ its height.
 
 import os
 import time
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -14,15 +14,20 @@ from uplift.common.arrays import StrPath, Values
 from uplift.common.errors import TextureError, UpliftWarning
 from uplift.common.files import check_output, file_digest
 from uplift.common.progress import Progress, ProgressCallback, ignore_progress
-from uplift.extras.texture.channels import ColourChannels, colour_channels_by_part
-from uplift.extras.texture.colours import Counts, source_space, space_warnings
-from uplift.extras.texture.image import Image, Part, open_image
-from uplift.extras.texture.uplifter import Converter, ConvertRows, ReadColours
-from uplift.extras.texture.writer import OutputPart, Writer, open_writer
+from uplift.extras.images.channels import ColourChannels, colour_channels_by_part
+from uplift.extras.images.converter import Band, Converter, ImageConverter
+from uplift.extras.images.counts import Counts
+from uplift.extras.images.image import Image, Part, open_image
+from uplift.extras.images.reader import ReadColours
+from uplift.extras.images.writer import OutputPart, Writer, open_writer
 
 SOURCE = "uplift.source"
 """Attribute with the size and the SHA-256 digest of the image that a texture was made
 of.
+"""
+LOSSLESS = {"half": "half", "uint": "uint", "uint8": "half"}
+"""OpenEXR types that hold all values of a type, by that type; float for others.
+Integers become [0, 1].
 """
 
 
@@ -35,7 +40,7 @@ class Conversion:
     source, target : Path
         The image read and the file written.
     counts : Counts
-        Numbers of pixels by kind.
+        Numbers of pixels, and of those that were changed.
     warnings : tuple of UpliftWarning
         Warnings about the image. They are data: `convert` does not emit them, as it may
         run in another process.
@@ -62,6 +67,7 @@ def convert(
     source: StrPath,
     target: StrPath,
     *,
+    also: Sequence[StrPath] = (),
     force: bool = False,
     progress: ProgressCallback = ignore_progress,
 ) -> Conversion:
@@ -74,13 +80,15 @@ def convert(
     Parameters
     ----------
     converter : Converter
-        Made by `prepare`, `prepare_masked`, `prepare_lights` or
-        `uplift.extras.relight.relighter`, or a coat of paint
+        Made by `prepare`, `prepare_masked`, `prepare_lights`, `prepare_several_lights`
+        or `uplift.extras.relight.relighter`, or a coat of paint
         (`uplift.extras.paint.overpainter`).
     source : path-like
         OpenEXR, Radiance HDR, PNG, JPEG or TIFF image.
     target : path-like
         OpenEXR file to write.
+    also : sequence of path-like
+        Further photographs of the image, for `prepare_several_lights`.
     force : bool
         Whether to replace an existing file.
     progress : callable
@@ -105,37 +113,23 @@ def convert(
         built for a scene, lacks the nodes for it.
     """
     begin = time.perf_counter()
-    check_output(target, inputs=[source, *converter.paths], force=force)
-    made_of = {SOURCE: source_stamp(source, *converter.paths)}
-    with open_image(source) as image, converter.opened(image) as convert_rows:
-        parts = colour_channels_by_part(image)
+    check_output(target, inputs=[source, *also], force=force)
+    made_of = {SOURCE: source_stamp(source, *also)}
+    further = [Path(path) for path in also]
+    with open_image(source) as image, converter.open(image, further) as to_rows:
         layouts = [
-            _layout(converter, image, part, colours, made_of) for part, colours in parts
+            _layout(converter, to_rows, image, part, colours, made_of)
+            for part, colours in colour_channels_by_part(image)
         ]
-        total = sum(layout.part.window.height for layout in layouts)
-        counts = Counts()
-        done = 0
         outputs = [layout.output for layout in layouts]
         with open_writer(target, outputs, force=force) as writer:
-            for layout in layouts:
-                writer.start_part(layout.part.number)
-                for first, band in _bands(image, layout):
-                    counts += _write_band(
-                        converter, convert_rows, layout, writer, first, band
-                    )
-                    done += len(band)
-                    progress(Progress("rows", done, total))
-        notes = space_warnings(image, converter.sensor, converter.space)
-        facts = converter.facts(image)
-    warnings = (*counts.warnings(converter.out_of_gamut, source), *notes)
-    spaces = tuple(
-        dict.fromkeys(
-            _space_name(converter, layout.part) for layout in layouts if layout.colours
-        )
-    )
+            counts = _write(layouts, image, to_rows, writer, progress)
+        warnings = (*counts.warnings(source), *converter.reader.warnings(image))
+    coloured = [layout.part for layout in layouts if layout.colours]
+    spaces = tuple(dict.fromkeys(map(converter.reader.space_name, coloured)))
     seconds = time.perf_counter() - begin
     return Conversion(
-        Path(source), Path(target), counts, warnings, seconds, spaces, facts
+        Path(source), Path(target), counts, warnings, seconds, spaces, to_rows.facts
     )
 
 
@@ -149,40 +143,29 @@ def source_stamp(*sources: StrPath) -> str:
     return ", ".join(f"{size} {digest}" for size, digest in stamps)
 
 
-def _space_name(converter: Converter, part: Part) -> str:
-    space = source_space(part, converter.sensor, converter.space)
-    if space is not None:
-        return space.name
-    return "linear " * (not part.max_code) + converter.sensor.space
-
-
-LOSSLESS = {"half": "half", "uint": "uint", "uint8": "half"}
-"""OpenEXR types that hold all values of a type, by that type; float for others.
-Integers become [0, 1].
-"""
-
-
 @dataclass(frozen=True, eq=False)
 class _Layout:
-    """Which channels of a part are colours, which pass through (indices ``others``),
-    and how it is written.
+    """Which channels of a part are colours, and how they are decoded; which pass
+    through (indices ``others``), and how the part is written.
     """
 
     part: Part
     colours: ColourChannels | None
     others: tuple[int, ...]
-    decoder: ReadColours
+    decode: ReadColours
     output: OutputPart
 
 
 def _layout(
     converter: Converter,
+    to_rows: ImageConverter,
     image: Image,
     part: Part,
-    found: ColourChannels | None,
+    colours: ColourChannels | None,
     made_of: Mapping[str, str],
 ) -> _Layout:
-    colours = None if found is None else converter.colour_channels(found)
+    if colours is not None:
+        colours = converter.reader.channels(colours)
     rgb = () if colours is None else colours.rgb
     others = tuple(index for index in range(len(part.channels)) if index not in rgb)
     names = tuple(part.channels[index] for index in others)
@@ -197,17 +180,29 @@ def _layout(
             )
         names = (*converted, *names)
         types = (*(converter.depth,) * len(converted), *types)
-    modified = time.gmtime(image.path.stat().st_mtime)
-    # as EXIF writes it
-    date = part.date or time.strftime("%Y:%m:%d %H:%M:%S", modified)
-    header = {
-        **part.metadata,
-        **converter.header,
-        **converter.part_header(part),
-        **made_of,
-    }
-    output = OutputPart(part.name, part.window, names, types, header, date)
-    return _Layout(part, colours, others, converter.decoder(part), output)
+    header = {**part.metadata, **converter.header, **to_rows.header(part), **made_of}
+    output = OutputPart(part.name, part.window, names, types, header, image.date(part))
+    return _Layout(part, colours, others, converter.reader.decoder(part), output)
+
+
+def _write(
+    layouts: Sequence[_Layout],
+    image: Image,
+    to_rows: ImageConverter,
+    writer: Writer,
+    progress: ProgressCallback,
+) -> Counts:
+    """Convert and write all bands of all parts."""
+    total = sum(layout.part.window.height for layout in layouts)
+    counts = Counts()
+    done = 0
+    for layout in layouts:
+        writer.start_part(layout.part.number)
+        for first, band in _bands(image, layout):
+            counts += _write_band(layout, to_rows, writer, first, band)
+            done += len(band)
+            progress(Progress("rows", done, total))
+    return counts
 
 
 def _bands(image: Image, layout: _Layout) -> Iterator[tuple[int, Values]]:
@@ -219,12 +214,7 @@ def _bands(image: Image, layout: _Layout) -> Iterator[tuple[int, Values]]:
 
 
 def _write_band(
-    converter: Converter,
-    convert_rows: ConvertRows,
-    layout: _Layout,
-    writer: Writer,
-    first: int,
-    band: Values,
+    layout: _Layout, to_rows: ImageConverter, writer: Writer, first: int, band: Values
 ) -> Counts:
     """Convert and write a band. Its arrays are gone before those of the next, which
     halves the memory.
@@ -235,11 +225,10 @@ def _write_band(
     if layout.part.max_code:
         others = others / np.float32(layout.part.max_code)
     if layout.colours is not None:
-        rgb, decoded = layout.decoder(layout.colours.straight(band))
-        values, converted = convert_rows(layout.part, first, rgb)
-        if (opacity := layout.colours.opacity(band)) is not None:
-            values = converter.multiply(values, opacity)
+        rgb, decoded = layout.decode(layout.colours.straight(band))
+        opacity = layout.colours.opacity(band)
+        values, converted = to_rows.rows(Band(layout.part, first, rgb, opacity))
         counts = decoded + converted
     dtype = np.result_type(np.float32, others)
     rows = np.concatenate([*values, others], axis=-1, dtype=dtype)
-    return counts + Counts(too_bright=writer.write_rows(first, rows))
+    return counts + writer.write_rows(first, rows)

@@ -1,5 +1,5 @@
-"""An emission table prepared for images of lights: environment maps, screens, textures
-of lamps.
+"""Images of lights, such as environment maps, screens and textures of lamps, uplifted
+by an emission table.
 """
 
 import json
@@ -11,86 +11,95 @@ from numpy.typing import ArrayLike
 from uplift.colorimetry.observer import sensor
 from uplift.common.arrays import Array, Floats, Values
 from uplift.common.errors import OptionError
-from uplift.extras.colour.spaces import find_space
 from uplift.extras.emission.file import emission_digest
 from uplift.extras.emission.lookup import MAX_VALUE, EmissionTable
 from uplift.extras.images import exr
-from uplift.extras.texture import colours, uplifter
-from uplift.extras.texture.channels import BRIGHTEST, ColourChannels
-from uplift.extras.texture.image import Part
+from uplift.extras.images.channels import BRIGHTEST, ColourChannels
+from uplift.extras.images.converter import (
+    Band,
+    Converted,
+    ImageConverter,
+    RowConverter,
+    resolve_depth,
+)
+from uplift.extras.images.counts import Counts
+from uplift.extras.images.image import Part
+from uplift.extras.images.reader import (
+    NOT_FINITE,
+    REPLACED,
+    ReadColours,
+    Reader,
+    reads_codes,
+)
+from uplift.extras.texture.encodings import SPECTRAL_LAYOUT, spectral_channels
 from uplift.lookup.blocks import as_wavelengths
 
 DEPTHS = ("float", "half")
 """Types of channels, the default first."""
 UNITS = "W.m^-2.sr^-1"
 """Units of emissive channels in the layout of Fichet et al. 2021."""
+NOT_LIGHTS = "pixels-not-lights"
+TOWARDS_WHITE = (
+    "of colours that no light has: moved towards white of the same luminance"
+)
 
 
-@dataclass(frozen=True, eq=False)
-class LightUplifter(uplifter.Converter):
-    """A converter of the colours of lights to power at ``wavelengths`` (N,) nm, made by
-    `prepare_lights`.
-    """
+@dataclass(frozen=True, eq=False, kw_only=True)
+class LightReader(Reader):
+    """Reader of lights, which have any brightness, for an emission table."""
 
     table: EmissionTable
-    wavelengths: Array
-    threads: int
 
-    def colour_channels(self, found: ColourChannels) -> ColourChannels:
-        # Colours stay multiplied by alpha: a spectrum scales with its light, and light
-        # needs no opacity.
+    def channels(self, found: ColourChannels) -> ColourChannels:
+        """Keep colours multiplied by alpha: a spectrum scales with its light, and light
+        needs no opacity.
+        """
         return replace(found, alpha=None)
 
-    def decoder(self, part: Part) -> uplifter.ReadColours:
-        source = colours.source_space(part, self.sensor, self.space)
-        if self.encoding == "encoded" and not colours.reads_codes(part, source):
+    def decoder(self, part: Part) -> ReadColours:
+        """Make the conversion of the numbers of a part to linear RGB of the table."""
+        source = self.source_space(part)
+        if self.encoding == "encoded" and not reads_codes(part, source):
             # A transfer function ends at 1, lights do not.
             hint = "leave out encoding='encoded', or name an encoded space"
             raise OptionError("floats of lights must be linear", hint=hint)
         matrix = None if source is None else source.matrix(self.table)
-        to_linear = colours.linear_reader(self.sensor, part, self.encoding, source)
+        to_linear = self.to_linear(part, source)
 
-        def read(numbers: Values) -> tuple[Floats, colours.Counts]:
+        def read(numbers: Values) -> tuple[Floats, Counts]:
             rgb = np.asarray(to_linear(numbers), dtype=float)
             usable = np.abs(rgb) <= MAX_VALUE  # NaN is not
             rgb = np.where(usable, rgb, np.where(rgb > 0, BRIGHTEST, 0.0))
             if matrix is not None:
                 rgb = rgb @ matrix.T
-            changed = int((~usable.all(axis=-1)).sum())
-            return rgb.astype(np.float32, copy=False), colours.Counts(
-                numbers.size // 3, not_finite=changed
-            )
+            wrong = (~usable.all(axis=-1)).sum()
+            counts = Counts(numbers.size // 3) + Counts.of(NOT_FINITE, wrong, REPLACED)
+            return rgb.astype(np.float32, copy=False), counts
 
         return read
 
-    def convert(self, rgb: Floats) -> uplifter.Converted:
-        lights, wrong = self._of_lights(rgb)
-        counts = colours.Counts(not_lights=wrong)
-        return (lights.astype(np.float32), self._power(lights)), counts
 
-    def power(self, rgb: Floats) -> tuple[Floats, colours.Counts]:
-        """Return the power (…, N) of lights of linear RGB (…, 3), and counts of colours
-        that no light has.
-        """
-        lights, wrong = self._of_lights(rgb)
-        return self._power(lights), colours.Counts(not_lights=wrong)
+def light_reader(
+    table: EmissionTable, encoding: str = "auto", space: str | None = None
+) -> LightReader:
+    """Return the reader of lights for a table."""
+    colours = sensor(table.space)
+    return LightReader(sensor=colours, encoding=encoding, space=space, table=table)
 
-    def _of_lights(self, rgb: Floats) -> tuple[Array, int]:
-        """Return linear RGB (…, 3) that lights have, and the number of changed ones."""
-        lights = rgb.astype(float)
-        wrong = ~self.table.contains(lights)
-        clipped = self.table.spectrum(lights[wrong], outside="clip")
-        lights[wrong] = self.table.rgb(clipped)
-        return lights, int(wrong.sum())
 
-    def _power(self, lights: Array) -> Floats:
-        return self.table.spectrum(
-            lights,
-            self.wavelengths,
-            outside="clip",
-            dtype=np.float32,
-            threads=self.threads,
-        )
+def light_power(
+    table: EmissionTable, rgb: Floats, wavelengths: Array, threads: int
+) -> tuple[Array, Floats, Counts]:
+    """Return linear RGB (…, 3) that lights have, their power (…, N) at wavelengths
+    (N,), and counts of the colours that no light has.
+    """
+    lights = rgb.astype(float)
+    wrong = ~table.contains(lights)
+    lights[wrong] = table.rgb(table.spectrum(lights[wrong], outside="clip"))
+    power = table.spectrum(
+        lights, wavelengths, outside="clip", dtype=np.float32, threads=threads
+    )
+    return lights, power, Counts.of(NOT_LIGHTS, wrong.sum(), TOWARDS_WHITE)
 
 
 def prepare_lights(
@@ -101,7 +110,7 @@ def prepare_lights(
     encoding: str = "auto",
     space: str | None = None,
     threads: int = 2,
-) -> LightUplifter:
+) -> RowConverter:
     """Prepare an emission table for images of lights.
 
     Parameters
@@ -123,7 +132,7 @@ def prepare_lights(
 
     Returns
     -------
-    LightUplifter
+    RowConverter
         The converter to pass to `convert`.
 
     Raises
@@ -140,37 +149,32 @@ def prepare_lights(
     >>> texture.prepare_lights(uplift.load_emission(), [450, 550]).channels
     ('S0.450,000000nm', 'S0.550,000000nm')
     """
-    depth = uplifter.resolve_depth(depth, DEPTHS, "lights")
-    colours.check_encoding(encoding)
+    depth = resolve_depth(depth, DEPTHS, "lights")
+    reader = light_reader(table, encoding, space)
     at = as_wavelengths(wavelengths, table.wavelengths)
-    channels = uplifter.spectral_channels("S0", at)
     settings = {
         "as": "emission",
         "wavelengths": at.tolist(),
         "depth": depth,
-        "encoding": encoding,
+        **reader.settings,
     }
-    settings |= {} if space is None else {"space": space}
-    colour_space = sensor(table.space)
-    header = {
-        "chromaticities": exr.chromaticities(colour_space),
-        "uplift.cube": emission_digest(table.data),
-        "uplift.texture": json.dumps(settings, allow_nan=False),
-        "uplift.space": table.space,
-        "uplift.observer": table.observer,
-        **uplifter.SPECTRAL_LAYOUT,
-        "emissiveUnits": UNITS,
-    }
-    chosen = None if space is None else find_space(space)
-    return LightUplifter(
-        colour_space,
-        depth,
-        encoding,
-        "clip",
-        channels,
-        header,
-        table,
-        at,
-        threads,
-        space=chosen,
+
+    def rows(band: Band) -> Converted:
+        lights, power, counts = light_power(table, band.rgb, at, threads)
+        return (lights.astype(np.float32), power), counts
+
+    return RowConverter(
+        reader=reader,
+        depth=depth,
+        channels=spectral_channels("S0", at),
+        header={
+            "chromaticities": exr.chromaticities(reader.sensor),
+            "uplift.cube": emission_digest(table.data),
+            "uplift.texture": json.dumps(settings, allow_nan=False),
+            "uplift.space": table.space,
+            "uplift.observer": table.observer,
+            **SPECTRAL_LAYOUT,
+            "emissiveUnits": UNITS,
+        },
+        to_rows=ImageConverter(rows),
     )

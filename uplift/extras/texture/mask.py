@@ -12,26 +12,30 @@ colour, and stays in [0, 1]. Multipliers are mixed as moments.
 import contextlib
 import json
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 
 from uplift.common.arrays import Floats, Mask, StrPath, Values
-from uplift.common.errors import ColourError, OptionError, TextureError
+from uplift.common.errors import OptionError, TextureError
 from uplift.common.files import file_digest
 from uplift.common.text import pluralise
 from uplift.cube.data import common_sensor
-from uplift.extras.texture.channels import colour_channels, coloured_parts
-from uplift.extras.texture.colours import Counts
-from uplift.extras.texture.image import Image, Part, open_image
-from uplift.extras.texture.uplifter import Converted, Converter, ConvertRows, Uplifter
+from uplift.extras.images.channels import colour_channels, coloured_parts
+from uplift.extras.images.converter import (
+    Band,
+    Converted,
+    Converter,
+    ImageConverter,
+)
+from uplift.extras.images.counts import Counts
+from uplift.extras.images.image import Image, Part, errors_at, open_image
+from uplift.extras.texture.uplifter import Uplifter
 from uplift.lattice.entry_boxes import OutsideBoxes
 from uplift.lookup.refine import refine_to_rgb
 
-ToWeights = Callable[[Values], Floats]
-"""From numbers (…, 3) of a mask to weights (…, n)."""
 MIN_WHITE = 0.5
 """Share of white that the largest weight of an integer mask has; smaller ones may be
 numbers of too many cubes.
@@ -40,7 +44,13 @@ HINT = (
     "paint a grey mask with the numbers of the cubes, or with weights of the second "
     "of two cubes up to white"
 )
-
+MEANINGS = {
+    2: "0 and 1, or weights up to white",
+    3: "0 to 2, or weights in R, G and B that are not all 0",
+}
+"""What masks of two and of three cubes hold."""
+ToWeights = Callable[[Values], Floats]
+"""From numbers (…, 3) of a mask to weights (…, n)."""
 ReadWeights = Callable[[int, int], Floats]
 """From the first row, counted from 0, and the number of rows k to weights (k, width, n)
 of n cubes, of sum 1.
@@ -62,11 +72,8 @@ def open_mask(
         size = part.window.width, part.window.height
         if size != window:
             raise TextureError(
-                (
-                    f"a mask must have the size of its image, {window[0]} × "
-                    f"{window[1]}, "
-                    f"got {size[0]} × {size[1]}"
-                ),
+                "a mask must have the size of its image, "
+                f"{window[0]} × {window[1]}, got {size[0]} × {size[1]}",
                 hint="scale the mask",
             )
         colours = colour_channels(part)
@@ -76,44 +83,18 @@ def open_mask(
                 f"no mask among the channels {', '.join(part.channels)}", hint=HINT
             )
         rgb = (0, 0, 0) if colours is None else colours.rgb
-        to_weights = _interpret(image, part, rgb, cubes)
+        to_weights = _to_weights(_survey(image, part, rgb), cubes)
         yield lambda first, count: to_weights(image.rows(part, first, count)[..., rgb])
 
 
-def _interpret(
-    image: Image, part: Part, rgb: tuple[int, int, int], cubes: int
-) -> ToWeights:
-    """Return the function from the numbers (…, 3) of a mask to weights (…, n). Raises
-    `TextureError` for others.
-    """
-    values = _survey(image, part, rgb)
-    interpret = _grey_weights if values.is_grey else _colour_weights
-    to_weights = interpret(values, cubes)
-    if to_weights is None:
-        kind = "grey" if values.is_grey else "coloured"
-        raise _no_mask(cubes, f"{kind} values from {values.low:g} to {values.high:g}")
-    return to_weights
-
-
 class Survey(NamedTuple):
-    """What the numbers of a mask have in common."""
+    """What the numbers of a mask have in common; ``max_code`` is 0 for floats."""
 
     low: float
     high: float
     is_grey: bool
     has_black: bool
     max_code: int
-    """Code of white; 0 for floats."""
-
-    @property
-    def white(self) -> int:
-        """Value of white."""
-        return self.max_code or 1
-
-    @property
-    def is_weight(self) -> bool:
-        """Whether all numbers are from 0 to white."""
-        return self.low >= 0 and self.high <= self.white
 
 
 def _survey(image: Image, part: Part, rgb: tuple[int, int, int]) -> Survey:
@@ -130,42 +111,33 @@ def _survey(image: Image, part: Part, rgb: tuple[int, int, int]) -> Survey:
     return Survey(low, high, is_grey, has_black, part.max_code)
 
 
-def _grey_weights(values: Survey, cubes: int) -> ToWeights | None:
-    """Return the function for numbers of cubes, or for weights of the second of two;
-    None if the values are neither.
+def _to_weights(values: Survey, cubes: int) -> ToWeights:
+    """Return the function from the numbers of a mask to weights: numbers of cubes, or
+    weights of the second of two or of all three. Raises `TextureError` for others.
     """
-    if values.max_code and values.high < cubes:
-        return lambda numbers: np.asarray(
-            numbers[..., :1] == np.arange(cubes), dtype=np.float32
-        )
-    has_white = not values.max_code or values.high >= MIN_WHITE * values.white
-    if cubes == 2 and values.is_weight and has_white:
-        white = np.float32(values.white)
-        return lambda numbers: _pair(
-            np.asarray(numbers[..., 0] / white, dtype=np.float32)
-        )
-    return None
-
-
-def _colour_weights(values: Survey, cubes: int) -> ToWeights | None:
-    """Return the function for weights of three cubes, None if the values are others."""
-    is_mask = cubes == 3 and values.is_weight and not values.has_black
-    return _normalised if is_mask else None
-
-
-def _no_mask(cubes: int, values: str) -> TextureError:
-    meanings = {
-        2: "0 and 1, or weights up to white",
-        3: "0 to 2, or weights in R, G and B that are not all 0",
-    }
-    meaning = meanings.get(cubes, f"0 to {cubes - 1}")
-    return TextureError(
-        f"a mask of {pluralise(cubes, 'cube')} must hold {meaning}, got {values}",
+    white = values.max_code or 1
+    is_weight = values.low >= 0 and values.high <= white
+    if values.is_grey:
+        if values.max_code and values.high < cubes:
+            return lambda numbers: np.asarray(
+                numbers[..., :1] == np.arange(cubes), dtype=np.float32
+            )
+        has_white = not values.max_code or values.high >= MIN_WHITE * white
+        if cubes == 2 and is_weight and has_white:
+            return lambda numbers: _pair(numbers[..., 0] / np.float32(white))
+    elif cubes == 3 and is_weight and not values.has_black:
+        return _normalised
+    kind = "grey" if values.is_grey else "coloured"
+    raise TextureError(
+        f"a mask of {pluralise(cubes, 'cube')} must hold "
+        f"{MEANINGS.get(cubes, f'0 to {cubes - 1}')}, got {kind} values from "
+        f"{values.low:g} to {values.high:g}",
         hint=HINT,
     )
 
 
-def _pair(second: Floats) -> Floats:
+def _pair(weight: Values) -> Floats:
+    second = np.asarray(weight, dtype=np.float32)
     return np.stack([1 - second, second], axis=-1)
 
 
@@ -174,7 +146,7 @@ def _normalised(numbers: Values) -> Floats:
     return weights / weights.sum(axis=-1, keepdims=True)
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class MaskedUplifter(Converter):
     """A converter of colours to the spectra of n cubes, chosen by an image, made by
     `prepare_masked`.
@@ -184,50 +156,32 @@ class MaskedUplifter(Converter):
     mask: Path
 
     @contextlib.contextmanager
-    def opened(self, image: Image) -> Iterator[ConvertRows]:
+    def open(self, image: Image, also: Sequence[Path] = ()) -> Iterator[ImageConverter]:
+        """Open the mask for an image."""
         sizes = dict.fromkeys(
             (part.window.width, part.window.height) for part, _ in coloured_parts(image)
         )
-        with (
-            contextlib.ExitStack() as stack
-        ):  # a mask that fits one size only is an error for the other
+        with contextlib.ExitStack() as stack:
+            # A mask that fits one size only is an error for the other.
             weights, *_ = [
                 stack.enter_context(open_mask(self.mask, len(self.uplifters), size))
                 for size in sizes
             ]
-            try:
-                yield lambda part, first, rgb: self.mix(
-                    rgb, weights(first - part.window.y, len(rgb))
-                )
-            except (
-                ColourError,
-                TextureError,
-            ) as error:  # of the image, not of the mask
-                error.path = error.path or image.path
-                raise
+            stack.enter_context(errors_at(image.path))  # they are not of the mask
+            yield ImageConverter(
+                lambda band: self.rows(band, weights(band.first, len(band.rgb)))
+            )
 
-    def convert(self, rgb: Floats) -> Converted:
-        return self.uplifters[0].convert(rgb)
-
-    @property
-    def boxes(self) -> OutsideBoxes:
-        boxes = [uplifter.boxes for uplifter in self.uplifters]
-        return OutsideBoxes(
-            np.concatenate([outside.rgb for outside in boxes]),
-            np.concatenate([outside.half_width for outside in boxes]),
-        )
-
-    def mix(self, rgb: Floats, weights: Floats) -> Converted:
-        """Uplift linear RGB (k, width, 3) of the decoder by the cubes, with weights (k,
-        width, n) of sum 1.
+    def rows(self, band: Band, weights: Floats) -> Converted:
+        """Convert a band by the cubes, with weights (k, width, n) of sum 1.
 
         A colour in the box of an entry outside [0, 1] is answered so by the cube that
         has the entry, and mapped by the others. The colours of these answers are mixed
         likewise.
         """
-        is_mixed: Mask = np.all(
-            weights < (1 if self.uplifters[0].model else 0), axis=-1
-        )
+        rgb = band.rgb
+        pixels = self.uplifters[0].pixels
+        is_mixed: Mask = np.all(weights < (1 if pixels.model else 0), axis=-1)
         is_outside: Mask = np.any((rgb < 0) | (rgb > 1), axis=-1)
         answered = np.where(is_outside[..., None], 0, rgb)
         values = np.zeros((*rgb.shape[:2], len(self.channels)), dtype=np.float32)
@@ -239,20 +193,18 @@ class MaskedUplifter(Converter):
             rows = weight > 0
             if not rows.any():
                 continue
-            requested, changed = uplifter.mapped(rgb[rows])
-            (colours, found), counted = uplifter.convert(requested)
-            counts += counted + replace(changed, pixels=0)
-            kept = is_outside[rows]
-            answered[rows & is_outside] += (
-                weight[rows & is_outside][:, None] * colours[kept]
-            )
+            requested, changed = uplifter.reader.mapped(rgb[rows])
+            colours, numbers, missed = uplifter.numbers(requested)
+            counts += missed + replace(changed, pixels=0)
+            outside = rows & is_outside
+            answered[outside] += weight[outside][:, None] * colours[is_outside[rows]]
             mixed = is_mixed[rows]
-            shared = rows[is_mixed]
-            values[rows & ~is_mixed] += (
-                weight[rows & ~is_mixed][:, None] * found[~mixed]
-            )
+            plain = rows & ~is_mixed
+            values[plain] += weight[plain][:, None] * numbers[~mixed]
             if mixed.any():
-                parts = uplifter.cube.data.model.to_storage(found[mixed].astype(float))
+                shared = rows[is_mixed]
+                model = uplifter.cube.data.model
+                parts = model.to_storage(numbers[mixed].astype(float))
                 moments[shared] += weight[is_mixed][shared][:, None] * parts
         if len(moments):
             data = self.uplifters[0].cube.data
@@ -260,12 +212,7 @@ class MaskedUplifter(Converter):
             values[is_mixed] = refine_to_rgb(
                 data, data.model, start, answered[is_mixed].astype(float)
             )
-        return (answered, values), counts
-
-    def multiply(
-        self, values: tuple[Floats, ...], opacity: Floats
-    ) -> tuple[Floats, ...]:
-        return self.uplifters[0].multiply(values, opacity)
+        return (band.weighted(answered), pixels.weighted(values, band)), counts
 
 
 def prepare_masked(uplifters: Sequence[Uplifter], mask: Path) -> MaskedUplifter:
@@ -297,43 +244,47 @@ def prepare_masked(uplifters: Sequence[Uplifter], mask: Path) -> MaskedUplifter:
             hint="name the cubes in the order of the numbers in the mask",
         )
     first = uplifters[0]
-    common_sensor(each.cube.data for each in uplifters)
-    is_model_stored = first.channels[0][:1].islower()
-    models = {
-        json.dumps(each.cube.data.model.describe(), sort_keys=True)
-        for each in uplifters
-    }
-    if len({each.channels for each in uplifters}) > 1 or (
-        is_model_stored and len(models) > 1
-    ):
+    common_sensor(uplifter.cube.data for uplifter in uplifters)
+    if len(set(map(_kind_of_numbers, uplifters))) > 1:
         raise OptionError(
-            (
-                "cubes of one texture must have the same wavelengths or, for moments "
-                "and "
-                "multipliers, the same model"
-            ),
-            hint=(
-                "write spectra at given wavelengths, or build the cubes with the "
-                "same options"
-            ),
+            "cubes of one texture must have the same wavelengths or, for moments and "
+            "multipliers, the same model",
+            hint="write spectra at given wavelengths, or build the cubes with the "
+            "same options",
         )
     if first.errors:
         raise OptionError(
             "a texture of several cubes has no standard errors",
             hint="write one of each cube",
         )
-    mask_digest = file_digest(mask, TextureError)
-    digests = [each.header["uplift.cube"] for each in uplifters]
+    boxes = [uplifter.cube.data.outside_boxes for uplifter in uplifters]
+    all_boxes = OutsideBoxes(
+        np.concatenate([outside.rgb for outside in boxes]),
+        np.concatenate([outside.half_width for outside in boxes]),
+    )
+    digests = [uplifter.header["uplift.cube"] for uplifter in uplifters]
     description = json.loads(first.header["uplift.texture"]) | {
         "cubes": digests,
-        "mask": mask_digest,
+        "mask": file_digest(mask, TextureError),
     }
-    header = {
-        **first.header,
-        "uplift.cube": ", ".join(digests),
-        "uplift.texture": json.dumps(description),
-    }
-    settings = {each.name: getattr(first, each.name) for each in fields(Converter)}
     return MaskedUplifter(
-        **settings | {"header": header}, uplifters=tuple(uplifters), mask=mask
+        reader=replace(first.reader, boxes=all_boxes),
+        depth=first.depth,
+        channels=first.channels,
+        header={
+            **first.header,
+            "uplift.cube": ", ".join(digests),
+            "uplift.texture": json.dumps(description),
+        },
+        uplifters=tuple(uplifters),
+        mask=mask,
     )
+
+
+def _kind_of_numbers(uplifter: Uplifter) -> tuple[object, ...]:
+    """Return what the numbers of cubes of one texture have in common: their channels
+    and, unless they are spectra, their model.
+    """
+    is_model_stored = uplifter.channels[0][:1].islower()
+    model = uplifter.cube.data.model.describe() if is_model_stored else {}
+    return uplifter.channels, json.dumps(model, sort_keys=True)

@@ -3,7 +3,7 @@ fit the first.
 """
 
 import contextlib
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import NamedTuple
@@ -13,12 +13,13 @@ import numpy as np
 from uplift.atlas.resampling import resample
 from uplift.atlas.sources import read_atlas
 from uplift.colorimetry.illuminants import Illuminant
-from uplift.colorimetry.observer import light as find_light
-from uplift.colorimetry.sensor import Sensor
+from uplift.colorimetry.observer import lights as find_lights
 from uplift.common.arrays import Array, Mask, Values
 from uplift.common.errors import OptionError, TextureError
 from uplift.common.text import pluralise
-from uplift.extras.colour.spaces import find_space
+from uplift.extras.images.channels import ColourChannels, coloured_parts
+from uplift.extras.images.image import Image, Part, open_image
+from uplift.extras.images.reader import SurfaceReader
 from uplift.extras.photographs.answers import Photographs
 from uplift.extras.photographs.chart import (
     COLUMNS,
@@ -39,11 +40,7 @@ from uplift.extras.photographs.fit import (
     grey_balance,
 )
 from uplift.extras.photographs.photograph import Noise, Photograph
-from uplift.extras.texture.channels import ColourChannels, coloured_parts
-from uplift.extras.texture.colours import Decoder, linear_reader, make_decoder
-from uplift.extras.texture.image import Image, Part, open_image
-from uplift.extras.texture.uplifter import Sampler
-from uplift.lookup.cube import Cube
+from uplift.extras.texture.encodings import Sampler
 
 SAMPLED_ROWS = 24
 """Rows of a band that is sampled for exposure and noise."""
@@ -121,24 +118,21 @@ class FurtherPictures:
 
 
 @dataclass(frozen=True, eq=False)
-class Fitted:
-    """Exposures (L, 3) by channel and noise of the photographs of an image, and what
-    to state about them.
-    """
-
-    exposures: Array
-    noise: Noise
-    facts: tuple[str, ...]
-
-
-@dataclass(frozen=True, eq=False)
 class Picture:
-    """An open photograph, and how its numbers are read."""
+    """An open photograph, and how its numbers become linear RGB: by a function, and a
+    matrix (3, 3) if its space is another.
+    """
 
     image: Image
     part: Part
     channels: ColourChannels
-    decode: Decoder
+    to_linear: Callable[[Values], Values]
+    matrix: Array | None
+
+    @property
+    def size(self) -> tuple[int, int]:
+        """Width and height."""
+        return self.part.window.width, self.part.window.height
 
     def rows(self, first: int, count: int) -> Array:
         """Linear RGB (count, width, 3) from row ``first``, counted from 0; NaN for what
@@ -148,11 +142,9 @@ class Picture:
         numbers = self.channels.straight(band)
         unknown = self._unknown(numbers)
         with np.errstate(invalid="ignore"):
-            linear = np.asarray(self.decode.function(numbers), dtype=float)
+            linear = np.asarray(self.to_linear(numbers), dtype=float)
         linear = np.where(unknown, np.nan, linear)
-        if self.decode.matrix is not None:
-            linear = linear @ self.decode.matrix.T
-        return linear
+        return linear if self.matrix is None else linear @ self.matrix.T
 
     def _unknown(self, numbers: Values) -> Mask:
         if self.part.max_code:
@@ -161,51 +153,51 @@ class Picture:
         return ~np.isfinite(numbers) | (numbers == 0)
 
 
+def picture_of(image: Image, reader: SurfaceReader) -> Picture:
+    """Return the first part of an image that has colours as a photograph."""
+    part, channels = coloured_parts(image)[0]
+    decoder = reader.decoder(part)
+    return Picture(image, part, channels, decoder.to_linear, decoder.matrix)
+
+
 @contextlib.contextmanager
 def open_further(
-    further: FurtherPictures,
     paths: Sequence[Path],
-    size: tuple[int, int],
-    sensor: Sensor,
-    encoding: str,
+    pictures: Sequence[FurtherPicture],
+    first: Picture,
+    reader: SurfaceReader,
 ) -> Iterator[list[Picture]]:
-    """Open the further photographs of an image of this width and height, whose colours
-    are read as linear RGB of a sensor. Raises `TextureError`.
-    """
+    """Open the further photographs of an image. Raises `TextureError`."""
     with contextlib.ExitStack() as stack:
         opened = []
-        for path, picture in zip(paths, further.pictures, strict=True):
-            one = _open(path, size, sensor, encoding, picture)
-            opened.append(stack.enter_context(one))
+        for path, stated in zip(paths, pictures, strict=True):
+            image = stack.enter_context(open_image(path))
+            picture = picture_of(image, replace(reader, space=stated.space))
+            if picture.size != first.size:
+                raise TextureError(
+                    "photographs of one thing must have one size, "
+                    f"{first.size[0]} × {first.size[1]}, got "
+                    f"{picture.size[0]} × {picture.size[1]}",
+                    code="photographs-of-different-sizes",
+                    hint="scale it to the size of the first",
+                )
+            if stated.camera is not None:
+                # Raw values are in no RGB space, also if the file states one.
+                raw = reader.to_linear(picture.part, None)
+                picture = replace(picture, to_linear=raw, matrix=None)
+            opened.append(picture)
         yield opened
 
 
-@contextlib.contextmanager
-def _open(
-    path: Path,
-    size: tuple[int, int],
-    sensor: Sensor,
-    encoding: str,
-    picture: FurtherPicture,
-) -> Iterator[Picture]:
-    """Open a further photograph of this width and height."""
-    with open_image(path) as image:
-        part, channels = coloured_parts(image)[0]
-        found = part.window.width, part.window.height
-        if found != size:
-            raise TextureError(
-                f"photographs of one thing must have one size, {size[0]} × {size[1]}, "
-                f"got {found[0]} × {found[1]}",
-                code="photographs-of-different-sizes",
-                hint="scale it to the size of the first",
-            )
-        space = None if picture.space is None else find_space(picture.space)
-        decode = make_decoder(sensor, part, encoding, "clip", space)
-        if picture.camera is not None:
-            # Raw values are in no RGB space, also if the file states one.
-            raw = linear_reader(sensor, part, encoding, None)
-            decode = replace(decode, function=raw, matrix=None)
-        yield Picture(image, part, channels, decode)
+@dataclass(frozen=True, eq=False)
+class Fitted:
+    """Exposures (L, 3) by channel and noise of the photographs of an image, and what
+    to state about them.
+    """
+
+    exposures: Array
+    noise: Noise
+    facts: tuple[str, ...]
 
 
 def fit(
@@ -218,27 +210,30 @@ def fit(
     """Estimate how photographs fit the first one, of which ``sample`` answers linear
     RGB (n, 3) at the wavelengths of the sensor and perhaps at others.
     """
-    names = [photograph.light for photograph in prepared.further]
-    shifts = [
-        check_aligned(_crops(first, picture), name)
-        for picture, name in zip(pictures, names, strict=True)
-    ]
+    shifts = []
+    for photograph, picture in zip(prepared.further, pictures, strict=True):
+        shifts.append(check_aligned(_crops(first, picture), photograph.light))
     if further.chart is not None:
         return _fit_chart(prepared, further.chart, first, pictures)
     bands = [_sampled(picture) for picture in (first, *pictures)]
-    noise, noise_fact = _noise(further, bands, (first, *pictures))
+    noise = _noise(further, bands, (first, *pictures))
     factors = []
     facts = []
-    for number, (name, shift) in enumerate(zip(names, shifts, strict=True)):
-        pixels = _pixels(prepared.cube, sample, bands[0], bands[1 + number])
+    for number, shift in enumerate(shifts):
+        photograph = prepared.further[number]
+        pixels = _pixels(prepared, sample, bands[0], bands[1 + number])
         stated = further.pictures[number].exposure
         factor, reason = _exposure(prepared, number, pixels, stated)
         factors.append(factor)
         place = "alignment not known" if shift is None else f"shift {shift:.2f} pixels"
-        facts.append(f"{name}: exposure × {factor:.4g} ({reason}), {place}")
-        facts.append(f"{name}: {_balance(prepared.further[number], pixels)}")
+        facts += [
+            f"{photograph.light}: exposure × {factor:.4g} ({reason}), {place}",
+            f"{photograph.light}: {_balance(photograph, pixels)}",
+        ]
+    source = "as given" if further.noise else "estimated from flat areas"
+    facts.append(f"noise {noise.share:.2%} and {noise.floor:.2g} ({source})")
     exposures = np.repeat(np.array(factors)[:, None], 3, axis=1)
-    return Fitted(exposures, noise, (*facts, noise_fact))
+    return Fitted(exposures, noise, tuple(facts))
 
 
 def _fit_chart(
@@ -265,41 +260,44 @@ def _fit_chart(
     check_corners(sensor, orders, [own, *others], measured)
     further = [_patches(picture, places[0]) for picture in pictures]
     calibration = calibrate(prepared, own, further, measured)
-    exact = replace(prepared, noise=calibration.noise)
-    setting = sensor.observer, *sensor.range
-    lights = [find_light(name, *setting) for name in REPORTED]
+    noise = calibration.noise
+    exact = replace(prepared, noise=noise)
+    lights = find_lights(REPORTED, sensor.observer, sensor.range)
     errors = compare_patches(exact, calibration, own, further, measured, lights)
+    names = [light.name for light in lights]
     facts = [
         f"chart: the first photograph has {calibration.exposure:.4g} × reflectance"
     ]
     for photograph, gain in zip(prepared.further, calibration.gains, strict=True):
-        channels = " ".join(f"{value:.4g}" for value in gain)
-        facts.append(f"{photograph.light}: R G B × {channels} (from the chart)")
-    noise = calibration.noise
-    facts.append(f"noise {noise.share:.2%} and {noise.floor:.2g} (from the chart)")
-    means = ", ".join(
-        f"{light.name} {mean:.2f}"
-        for light, mean in zip(lights, np.nanmean(errors, axis=0), strict=True)
-    )
-    facts.append(f"ΔE00 of the patches from their measurements, mean: {means}")
+        facts.append(f"{photograph.light}: {_factors(gain, '.4g')} (from the chart)")
+    means = _labelled(names, np.nanmean(errors, axis=0))
+    facts += [
+        f"noise {noise.share:.2%} and {noise.floor:.2g} (from the chart)",
+        f"ΔE00 of the patches from their measurements, mean: {means}",
+    ]
     for name, row in zip(atlas.names, errors, strict=True):
-        columns = ", ".join(
-            f"{light.name} {value:.2f}"
-            for light, value in zip(lights, row, strict=True)
-        )
-        facts.append(f"  {name}: {'clipped' if np.isnan(row).any() else columns}")
+        values = "clipped" if np.isnan(row).any() else _labelled(names, row)
+        facts.append(f"  {name}: {values}")
     return Fitted(calibration.gains, noise, tuple(facts))
+
+
+def _factors(values: Array, form: str) -> str:
+    return f"R G B × {' '.join(format(value, form) for value in values)}"
+
+
+def _labelled(names: Sequence[str], values: Array) -> str:
+    pairs = zip(names, values, strict=True)
+    return ", ".join(f"{name} {value:.2f}" for name, value in pairs)
 
 
 def _patches(picture: Picture, points: Array) -> Patches:
     """Sample the patches of a chart at x, y (24, n, 2) in pixels."""
-    window = picture.part.window
+    width, height = picture.size
     x, y = np.floor(points).astype(int).transpose(2, 0, 1)
-    inside = (x >= 0) & (x < window.width) & (y >= 0) & (y < window.height)
-    if not inside.all():
+    if not ((x >= 0) & (x < width) & (y >= 0) & (y < height)).all():
         raise OptionError(
             "the chart must lie in the picture, whose width and height in pixels are "
-            f"{window.width} and {window.height}",
+            f"{width} and {height}",
             hint=CORNERS_HINT,
         )
     first = int(y.min())
@@ -319,7 +317,7 @@ class _Pixels(NamedTuple):
 
 
 def _pixels(
-    cube: Cube, sample: Sampler, first: list[Array], other: list[Array]
+    prepared: Photographs, sample: Sampler, first: list[Array], other: list[Array]
 ) -> _Pixels:
     """Take some of the pixels of bands of two photographs."""
     rgb = np.concatenate([band.reshape(-1, 3) for band in first])
@@ -327,7 +325,8 @@ def _pixels(
     known = np.flatnonzero(np.isfinite(rgb).all(axis=1))
     rows = known[:: max(len(known) // MAX_SAMPLE, 1)]
     colours = np.clip(rgb[rows], 0, 1)
-    expected = sample(colours.astype(np.float32))[:, : len(cube.wavelengths)]
+    count = len(prepared.cube.wavelengths)
+    expected = sample(colours.astype(np.float32))[:, :count]
     return _Pixels(colours, values[rows], expected.astype(float))
 
 
@@ -348,34 +347,26 @@ def _balance(further: Photograph, pixels: _Pixels) -> str:
     ratio = grey_balance(further, *pixels)
     if ratio is None:
         return "no greys to check the white balance by"
-    channels = " ".join(f"{value:.3f}" for value in ratio)
-    text = f"greys have R G B × {channels} of what is expected"
-    if np.abs(ratio - 1).max() > MAX_CAST:
-        text += "; check the balance"
-    return text
+    doubt = "; check the balance" * bool(np.abs(ratio - 1).max() > MAX_CAST)
+    return f"greys have {_factors(ratio, '.3f')} of what is expected{doubt}"
 
 
 def _noise(
     further: FurtherPictures, bands: list[list[Array]], pictures: Sequence[Picture]
-) -> tuple[Noise, str]:
-    """Return the noise of the noisiest photograph, and a statement."""
-    noise = Noise(*further.noise) if further.noise else None
-    if noise is None:
-        estimates = [
-            estimate_noise(band, picture.part.max_code)
-            for band, picture in zip(bands, pictures, strict=True)
-        ]
-        noise = Noise(
-            max(estimate.share for estimate in estimates),
-            max(estimate.floor for estimate in estimates),
-        )
-    source = "as given" if further.noise else "estimated from flat areas"
-    return noise, f"noise {noise.share:.2%} and {noise.floor:.2g} ({source})"
+) -> Noise:
+    """Return the noise of the noisiest photograph, unless it is stated."""
+    if further.noise:
+        return Noise(*further.noise)
+    estimates = [
+        estimate_noise(band, picture.part.max_code)
+        for band, picture in zip(bands, pictures, strict=True)
+    ]
+    return Noise(*np.max(estimates, axis=0).tolist())
 
 
 def _sampled(picture: Picture) -> list[Array]:
     """Return some bands of rows, evenly spread."""
-    height = picture.part.window.height
+    _, height = picture.size
     count = min(SAMPLED_ROWS, height)
     starts = np.unique(np.linspace(0, height - count, SAMPLED_BANDS).astype(int))
     return [picture.rows(int(start), count) for start in starts]
@@ -383,16 +374,16 @@ def _sampled(picture: Picture) -> list[Array]:
 
 def _crops(first: Picture, second: Picture) -> list[tuple[Array, Array]]:
     """Return the brightness of crops of two photographs: the middle and the corners."""
-    window = first.part.window
-    rows = min(CROP, window.height)
-    columns = min(CROP, window.width)
+    width, height = first.size
+    rows = min(CROP, height)
+    columns = min(CROP, width)
     crops = []
-    for start in sorted({0, (window.height - rows) // 2, window.height - rows}):
-        bands = [
+    for start in sorted({0, (height - rows) // 2, height - rows}):
+        one, other = (
             np.nan_to_num(picture.rows(start, rows)).sum(axis=-1)
             for picture in (first, second)
-        ]
-        for left in sorted({0, (window.width - columns) // 2, window.width - columns}):
+        )
+        for left in sorted({0, (width - columns) // 2, width - columns}):
             place = slice(left, left + columns)
-            crops.append((bands[0][:, place], bands[1][:, place]))
+            crops.append((one[:, place], other[:, place]))
     return crops

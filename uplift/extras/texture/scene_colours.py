@@ -16,15 +16,10 @@ from uplift.common.arrays import Array, Indices, Mask, StrPath
 from uplift.common.errors import OptionError, TextureError, warn
 from uplift.common.files import file_digest
 from uplift.common.progress import Progress, ProgressCallback
-from uplift.extras.colour.spaces import find_space
-from uplift.extras.texture.channels import coloured_parts
-from uplift.extras.texture.colours import (
-    Counts,
-    check_encoding,
-    make_decoder,
-    space_warnings,
-)
-from uplift.extras.texture.image import open_image
+from uplift.extras.images.channels import coloured_parts
+from uplift.extras.images.counts import Counts
+from uplift.extras.images.image import open_image
+from uplift.extras.images.reader import SurfaceReader, check_encoding
 from uplift.lattice.entry_boxes import MARGIN, EntryBoxes
 from uplift.lattice.lattice import CORNERS, Lattice
 
@@ -107,14 +102,17 @@ class Images:
         """Yield the colours of every pixel of this ``step``, as `colours`, and counts
         of those that had to change. Transparent ones are left out unless ``is_whole``.
         """
-        space = None if self.space is None else find_space(self.space)
+        reader = SurfaceReader(
+            sensor=sensor,
+            encoding=self.encoding,
+            space=self.space,
+            out_of_gamut=self.out_of_gamut,
+        )
         with open_image(path) as image:
-            for warning in space_warnings(image, sensor, space):
+            for warning in reader.warnings(image):
                 warn(warning)
             for part, channels in coloured_parts(image):
-                decode = make_decoder(
-                    sensor, part, self.encoding, self.out_of_gamut, space
-                )
+                decode = reader.decoder(part)
                 for _, band in image.bands(part):
                     pixels = band.reshape(-1, band.shape[-1])
                     for first in range(0, len(pixels), BLOCK_PIXELS * step):

@@ -3,8 +3,8 @@
 import contextlib
 import json
 from collections.abc import Iterator, Sequence
-from dataclasses import asdict, dataclass, fields, replace
-from functools import lru_cache
+from dataclasses import asdict, dataclass, replace
+from functools import cached_property
 from pathlib import Path
 
 import numpy as np
@@ -16,73 +16,95 @@ from uplift.colorimetry.sensor import Light
 from uplift.common.arrays import Array, Floats, Mask
 from uplift.common.errors import OptionError
 from uplift.common.machine import single_threaded_blas
+from uplift.extras.images.converter import (
+    Band,
+    Converted,
+    Converter,
+    ImageConverter,
+)
+from uplift.extras.images.counts import Counts
+from uplift.extras.images.image import Image, errors_at
+from uplift.extras.images.reader import SurfaceReader
 from uplift.extras.photographs.answers import Photographs
 from uplift.extras.photographs.answers import prepare as prepare_photographs
 from uplift.extras.photographs.errors import light_errors
 from uplift.extras.photographs.photograph import Noise, photograph
-from uplift.extras.texture.channels import coloured_parts
-from uplift.extras.texture.colours import Counts, make_decoder
-from uplift.extras.texture.image import Image, Part, open_image
-from uplift.extras.texture.mask import ReadWeights, open_mask
-from uplift.extras.texture.photographs import (
-    Fitted,
-    FurtherPictures,
-    Picture,
-    fit,
-    open_further,
-)
-from uplift.extras.texture.uplifter import (
-    Converted,
-    Converter,
-    ConvertRows,
+from uplift.extras.texture.encodings import (
     Multipliers,
     PixelEncoding,
     Sampler,
     Spectrum,
-    Uplifter,
 )
+from uplift.extras.texture.mask import ReadWeights, open_mask
+from uplift.extras.texture.photographs import (
+    FurtherPictures,
+    fit,
+    open_further,
+    picture_of,
+)
+from uplift.extras.texture.uplifter import Uplifter
 from uplift.lookup.blocks import blockwise
-from uplift.lookup.errors_under_lights import LightErrors
 from uplift.lookup.refine import refine_to_rgb
 from uplift.models.moments import moment_matrix
 
 NO_NOISE = (0.0, 0.0)
 CONTRADICTION = "contradiction"
 """Channel that is 1 where the photographs contradict each other."""
+CONTRADICTING = "photographs-contradict"
+BY_FIRST = "whose photographs contradict each other: answered by the first alone"
 
 
 @dataclass(frozen=True, eq=False)
 class CubeAnswers:
-    """Numbers of the pixels of photographs by one cube.
-
-    ``sample`` answers at the wavelengths of the sensor, and after them at those of the
-    pixels, if they are others.
-    """
+    """Numbers of the pixels of photographs by one cube."""
 
     photographs: Photographs
-    sample: Sampler
     kind: PixelEncoding
-    width: int
     threads: int
 
     def with_noise(self, noise: Noise) -> "CubeAnswers":
         """Return the same for photographs of another noise."""
         return replace(self, photographs=replace(self.photographs, noise=noise))
 
+    @cached_property
+    def wavelengths(self) -> Array | None:
+        """Wavelengths of pixels that are others than those of the sensor."""
+        stated = getattr(self.kind, "wavelengths", None)
+        return None if stated is None else np.array(stated)
+
+    @cached_property
+    def sample(self) -> Sampler:
+        """Answers of the cube at the wavelengths of the sensor, and after them at those
+        of the pixels.
+        """
+        from uplift.lookup import bulk
+
+        cube = self.photographs.cube
+        at = cube.wavelengths
+        if self.wavelengths is not None:
+            at = np.append(at, self.wavelengths)
+        return bulk.spectra(cube, at, threads=self.threads)
+
+    @property
+    def width(self) -> int:
+        """Numbers of a pixel."""
+        cube = self.photographs.cube
+        if not isinstance(self.kind, Spectrum):
+            return cube.data.model.count
+        at = cube.wavelengths if self.wavelengths is None else self.wavelengths
+        return len(at)
+
     def __call__(self, rgb: Array, others: Array) -> tuple[Floats, Mask]:
         """Numbers (n, N) at linear RGB (n, 3) and those of the further photographs (n,
         3 L), and which of these contradict each other.
         """
         expected = self.sample(rgb.astype(np.float32))
-        stated = getattr(self.kind, "wavelengths", None)
-        at = None if stated is None else np.array(stated)
-
         contradicts = np.empty(len(rgb), dtype=bool)
 
         def answer(rows: Array) -> Array:
             block = rows[:, 0].astype(int)
             answers = self.photographs.answer(
-                rgb[block], others[block], expected[block], at
+                rgb[block], others[block], expected[block], self.wavelengths
             )
             contradicts[block] = answers.contradicts
             return self._numbers(rgb[block], answers.spectra)
@@ -105,75 +127,67 @@ class CubeAnswers:
         return exact if isinstance(self.kind, Multipliers) else model.to_storage(exact)
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class SeveralLights(Converter):
     """A converter of photographs under several lights, made by
-    `prepare_several_lights`.
-
-    It answers with one cube, or mixes those of a ``mask``. ``paths`` are the further
-    photographs of the image that is converted.
+    `prepare_several_lights`. It answers with one cube, or mixes those of a ``mask``.
     """
 
+    reader: SurfaceReader
     cubes: tuple[CubeAnswers, ...]
     further: FurtherPictures
-    error_lights: tuple[Light, ...] = ()
-    mask: Path | None = None
+    error_lights: tuple[Light, ...]
+    mask: Path | None
 
     @contextlib.contextmanager
-    def opened(self, image: Image) -> Iterator[ConvertRows]:
-        fitted = _fit(self, image.path)
-        cubes = [cube.with_noise(fitted.noise) for cube in self.cubes]
-        estimates = [
-            light_errors(cubes[0].photographs, light) for light in self.error_lights
-        ]
-        size = _size(image)
-        further = open_further(
-            self.further, self.paths, size, self.sensor, self.encoding
-        )
+    def open(self, image: Image, also: Sequence[Path] = ()) -> Iterator[ImageConverter]:
+        """Open the further photographs of an image, and fit them."""
+        first = picture_of(image, self.reader)
+        prepared = self.cubes[0].photographs
         with contextlib.ExitStack() as stack:
-            stack.enter_context(single_threaded_blas())
-            pictures = stack.enter_context(further)
+            pictures = stack.enter_context(
+                open_further(also, self.further.pictures, first, self.reader)
+            )
+            fitted = fit(prepared, self.cubes[0].sample, self.further, first, pictures)
             weights: ReadWeights | None = None
             if self.mask is not None:
-                masks = open_mask(self.mask, len(self.cubes), size)
+                masks = open_mask(self.mask, len(self.cubes), first.size)
                 weights = stack.enter_context(masks)
+            cubes = [cube.with_noise(fitted.noise) for cube in self.cubes]
+            estimates = [
+                light_errors(cubes[0].photographs, light) for light in self.error_lights
+            ]
+            stack.enter_context(errors_at(image.path))
+            stack.enter_context(single_threaded_blas())
 
-            def convert_rows(part: Part, first: int, rgb: Floats) -> Converted:
-                row = first - part.window.y
+            def rows(band: Band) -> Converted:
+                count = len(band.rgb)
                 others = [
-                    picture.rows(row, len(rgb)) / factor
+                    picture.rows(band.first, count) / factor
                     for picture, factor in zip(pictures, fitted.exposures, strict=True)
                 ]
-                mixture = None if weights is None else weights(row, len(rgb))
-                values, counts = _answer(
-                    cubes, rgb, np.concatenate(others, axis=-1), mixture
+                mixture = None if weights is None else weights(band.first, count)
+                numbers, flags = _answer(
+                    cubes, band.rgb, np.concatenate(others, axis=-1), mixture
                 )
-                errors = [_standard_errors(estimate, rgb) for estimate in estimates]
-                numbers, contradicts = values
-                return (rgb, numbers, *errors, contradicts), counts
+                if not isinstance(self.cubes[0].kind, Multipliers):
+                    numbers = band.weighted(numbers)
+                errors = [
+                    blockwise(estimate, band.rgb.astype(float), 2, np.float32)[..., :1]
+                    for estimate in estimates
+                ]
+                counts = Counts.of(CONTRADICTING, flags.sum(), BY_FIRST)
+                return (band.weighted(band.rgb), numbers, *errors, flags), counts
 
-            yield convert_rows
-
-    def facts(self, image: Image) -> tuple[str, ...]:
-        return _fit(self, image.path).facts
-
-    def convert(self, rgb: Floats) -> Converted:
-        raise NotImplementedError("photographs are converted by rows")
-
-    def multiply(
-        self, values: tuple[Floats, ...], opacity: Floats
-    ) -> tuple[Floats, ...]:
-        rgb, numbers, *more = values
-        if not isinstance(self.cubes[0].kind, Multipliers):
-            numbers = numbers * opacity
-        return rgb * opacity, numbers, *more
+            yield ImageConverter(rows, facts=fitted.facts)
 
 
 def _answer(
     cubes: Sequence[CubeAnswers], rgb: Floats, others: Array, mixture: Floats | None
-) -> tuple[tuple[Floats, Floats], Counts]:
-    """Answer rows (k, width, 3) and those of the other photographs (k, width, 3 L),
-    by one cube, or by several with weights (k, width, n).
+) -> tuple[Floats, Floats]:
+    """Answer rows (k, width, 3) and those of the other photographs (k, width, 3 L), by
+    one cube, or by several with weights (k, width, n): numbers, and 1 where the
+    photographs contradict each other.
     """
     colours = rgb.reshape(-1, 3).astype(float)
     values = others.reshape(len(colours), -1)
@@ -181,51 +195,14 @@ def _answer(
     if mixture is not None:
         shares = mixture.reshape(len(colours), -1)
     numbers = np.zeros((len(colours), cubes[0].width), dtype=np.float32)
-    contradicts = np.zeros(len(colours), dtype=bool)
+    flags = np.zeros((len(colours), 1), dtype=np.float32)
     for cube, share in zip(cubes, shares.T, strict=True):
         rows = np.flatnonzero(share)
-        answered, unlike = cube(colours[rows], values[rows])
+        answered, contradicts = cube(colours[rows], values[rows])
         numbers[rows] += share[rows, None] * answered
-        contradicts[rows] |= unlike
+        flags[rows[contradicts]] = 1
     shape = rgb.shape[:-1]
-    flags = contradicts.reshape(*shape, 1).astype(np.float32)
-    counts = Counts(contradicting=int(contradicts.sum()))
-    return (numbers.reshape(*shape, -1), flags), counts
-
-
-def _standard_errors(estimate: LightErrors, rgb: Floats) -> Floats:
-    """ΔE00 (…, 1) of linear RGB (…, 3)."""
-    errors = blockwise(estimate, rgb.astype(float), 2, np.float32)
-    return errors[..., :1]
-
-
-def _size(image: Image) -> tuple[int, int]:
-    """Width and height of the first part of an image that has colours."""
-    window = coloured_parts(image)[0][0].window
-    return window.width, window.height
-
-
-@lru_cache(maxsize=4)
-def _fit(converter: SeveralLights, path: Path) -> Fitted:
-    """Estimate how the further photographs fit the image of this path."""
-    with open_image(path) as image:
-        part, channels = coloured_parts(image)[0]
-        decode = make_decoder(
-            converter.sensor, part, converter.encoding, "clip", converter.space
-        )
-        first = Picture(image, part, channels, decode)
-        further = open_further(
-            converter.further,
-            converter.paths,
-            _size(image),
-            converter.sensor,
-            converter.encoding,
-        )
-        cube = converter.cubes[0]
-        with further as pictures:
-            return fit(
-                cube.photographs, cube.sample, converter.further, first, pictures
-            )
+    return numbers.reshape(*shape, -1), flags.reshape(*shape, 1)
 
 
 def prepare_several_lights(
@@ -257,7 +234,8 @@ def prepare_several_lights(
     Returns
     -------
     SeveralLights
-        The converter; its ``paths`` are the further photographs of an image.
+        The converter; `convert` takes the further photographs of an image as
+        ``also``.
 
     Raises
     ------
@@ -278,41 +256,24 @@ def prepare_several_lights(
         )
     cubes = []
     for uplifter in uplifters:
+        sensor = uplifter.reader.sensor
         photographs = [
-            photograph(uplifter.sensor, picture.light, picture.camera, further.balance)
+            photograph(sensor, picture.light, picture.camera, further.balance)
             for picture in further.pictures
         ]
-        prepared = prepare_photographs(
-            uplifter.cube, photographs, further.noise or NO_NOISE
-        )
-        cubes.append(_cube_answers(prepared, kind, threads))
-    lights = find_lights(errors, first.sensor.observer, first.sensor.range)
-    settings = {each.name: getattr(first, each.name) for each in fields(Converter)}
+        noise = further.noise or NO_NOISE
+        prepared = prepare_photographs(uplifter.cube, photographs, noise)
+        cubes.append(CubeAnswers(prepared, kind, threads))
+    sensor = first.reader.sensor
     description = json.loads(first.header["uplift.texture"])
     description["also"] = asdict(further)
-    header = {**first.header, "uplift.texture": json.dumps(description)}
-    channels = (*first.channels, CONTRADICTION)
     return SeveralLights(
-        **settings | {"header": header, "channels": channels},
+        reader=first.reader,
+        depth=first.depth,
+        channels=(*first.channels, CONTRADICTION),
+        header={**first.header, "uplift.texture": json.dumps(description)},
         cubes=tuple(cubes),
         further=further,
-        error_lights=tuple(lights),
+        error_lights=tuple(find_lights(errors, sensor.observer, sensor.range)),
         mask=mask,
-    )
-
-
-def _cube_answers(
-    prepared: Photographs, kind: PixelEncoding, threads: int
-) -> CubeAnswers:
-    from uplift.lookup import bulk
-
-    cube = prepared.cube
-    at = cube.wavelengths
-    width = cube.data.model.count
-    if isinstance(kind, Spectrum):
-        stated = () if kind.wavelengths is None else kind.wavelengths
-        width = len(stated) or len(at)
-        at = np.append(at, stated)
-    return CubeAnswers(
-        prepared, bulk.spectra(cube, at, threads=threads), kind, width, threads
     )

@@ -8,9 +8,9 @@ import numpy as np
 
 from uplift.common.arrays import Values
 from uplift.common.text import pluralise
+from uplift.extras.timing import TimingStats, run_call, time_short_call
 from uplift.lab.chart.results import reference_batch
 from uplift.lab.chart.task import Effort
-from uplift.lab.timing import TimingStats, run_call, time_short_call
 
 GROWTH = 10
 """Factor between the numbers of colours from which the duration of a call is estimated.

@@ -15,13 +15,13 @@ from uplift.common.progress import Progress, ProgressCallback, ignore_progress
 from uplift.common.text import pluralise
 from uplift.extras.colour.light_sets import CHART_LIGHTS
 from uplift.extras.images.processes import ChildError, call_in_child
+from uplift.extras.timing import environment, run_call
 from uplift.lab.chart.call_times import BrokenError, affordable, call_times
 from uplift.lab.chart.results import SUMMARY, Chart, MethodResult, State
 from uplift.lab.chart.task import ChartTask
 from uplift.lab.description import Description
 from uplift.lab.method import Method, NotInstalledError, PreparedMethod
 from uplift.lab.runner import named_lights
-from uplift.lab.timing import environment, run_call
 
 MAX_CLAIM_RATIO = 10
 """A method is broken if its mean round-trip error is larger than the claimed one by

@@ -17,7 +17,6 @@ from uplift.common.files import read_bytes
 from uplift.common.text import format_value, parse_float, pluralise, shorten
 from uplift.extras.colour.light_sets import CHART_LIGHTS
 from uplift.extras.files.csv import csv_text, parse_csv
-from uplift.extras.pages.format import format_error, format_time
 from uplift.extras.pages.pareto import pareto_front
 from uplift.lab.description import Description
 
@@ -199,38 +198,31 @@ class Criterion:
         """Return the label of the time axis."""
         return "CPU time of a call, with set-up" if self.whole else "CPU time per RGB"
 
-    def time(self, result: MethodResult) -> float | None:
-        """Return the time in ns, None if it is unknown."""
-        per_rgb = result.numbers.get(f"ns_{self.batch}")
-        if per_rgb is None or not self.whole:
-            return per_rgb
-        return 1e9 * result.numbers["setup_s"] + self.batch * per_rgb
-
     def points(
         self, results: Iterable[MethodResult]
     ) -> dict[MethodResult, tuple[float, float]]:
-        """Return time and mean error of the results that have both."""
+        """Return time in ns and mean error, as they are drawn, of the results that have
+        both.
+        """
         points = {}
         for result in results:
-            time = self.time(result)
+            time = result.numbers.get(f"ns_{self.batch}")
             error = result.numbers.get(f"{self.error}_mean")
             if time is not None and error is not None:
+                if self.whole:
+                    time = 1e9 * result.numbers["setup_s"] + self.batch * time
                 points[result] = max(time, MIN_TIME), max(error, MIN_ERROR)
         return points
 
-    def labels(self, result: MethodResult) -> tuple[str, str]:
-        """Return time and mean error as text."""
-        return format_time(self.time(result) or 0.0), format_error(
-            result.numbers[f"{self.error}_mean"]
-        )
-
-    def front(self, results: Iterable[MethodResult]) -> list[MethodResult]:
-        """Return the Pareto front, fastest first: each is clearly more accurate than
-        all faster methods.
+    def front(
+        self, results: Iterable[MethodResult]
+    ) -> dict[MethodResult, tuple[float, float]]:
+        """Return the points of the Pareto front, fastest first: each is clearly more
+        accurate than all faster methods.
         """
-        points = self.points(results)
-        compared = list(points)
-        return [compared[row] for row in pareto_front(list(points.values()))]
+        points = list(self.points(results).items())
+        front = pareto_front([point for _, point in points])
+        return dict(points[row] for row in front)
 
 
 UNSEEN = "Unseen materials, mean of five lights"

@@ -14,6 +14,7 @@ from uplift.colorimetry.delta_e import delta_e_spectra, rgb_to_lab
 from uplift.colorimetry.illuminants import SCENE_LIGHTS
 from uplift.colorimetry.sensor import Sensor, in_unit_cube
 from uplift.common.arrays import Array
+from uplift.extras.timing import stopwatch
 from uplift.lab.method import (
     Method,
     PreparedMethod,
@@ -21,7 +22,6 @@ from uplift.lab.method import (
     ours,
 )
 from uplift.lab.runner import KNOWN, Known, Task
-from uplift.lab.timing import stopwatch
 from uplift.lookup.refine import FIRST_DAMPING, MAX_STEPS
 from uplift.models.minimum_norm import forward_map, minimum_norm_step
 from uplift.models.moments import Moments

@@ -21,6 +21,7 @@ import numpy as np
 
 from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Array
+from uplift.extras.timing import stopwatch
 from uplift.lab.method import (
     Method,
     NotInstalledError,
@@ -28,7 +29,6 @@ from uplift.lab.method import (
     stated_sensor,
 )
 from uplift.lab.runner import Task
-from uplift.lab.timing import stopwatch
 from uplift.models.sigmoid import evaluate_unscaled
 
 VARIANT = "scalar_spectral"

@@ -24,6 +24,7 @@ from uplift.colorimetry.sensor import Sensor
 from uplift.colorimetry.tables import aligned, look_up
 from uplift.common.arrays import Array, Values
 from uplift.common.colour_science import colour_science
+from uplift.extras.timing import stopwatch
 from uplift.lab.method import (
     Method,
     PreparedMethod,
@@ -34,7 +35,6 @@ from uplift.lab.method import (
 )
 from uplift.lab.methods import mitsuba3
 from uplift.lab.runner import Task
-from uplift.lab.timing import stopwatch
 from uplift.models.sigmoid import evaluate_unscaled
 
 MENG_STEP = 10.0

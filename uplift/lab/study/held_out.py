@@ -48,7 +48,6 @@ LIBRARY_METHODS: Mapping[str, Prepare] = {
 
 def holdout(
     atlas: Atlas,
-    splits: int = 3,
     progress: ProgressCallback = ignore_progress,
     *,
     dim: int = 32,
@@ -70,7 +69,7 @@ def holdout(
         )
         raise AtlasError(problem, code="too-few-entries", hint="use a larger atlas")
     left_out = families_like(spectra_of(atlas, sensor))
-    halves = list(divided(entries, left_out, sensor, seeds=splits))
+    halves = list(divided(entries, left_out, sensor))
     all_entries = [Task(sensor, Atlas(), spectra_of(entries, sensor), left_out)]
     of_size = partial(cube, dim=dim, coefficients=coefficients)
     methods: dict[str, Prepare] = {

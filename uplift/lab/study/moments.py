@@ -21,9 +21,10 @@ from uplift.common.arrays import Array, Complex
 from uplift.common.errors import AtlasError, OptionError
 from uplift.common.progress import ProgressCallback, ignore_progress, reported
 from uplift.extras.colour.light_sets import REPORT_LIGHTS
-from uplift.extras.report.comparison import delta_e_under, rms_difference
-from uplift.extras.scene.representations import samples
+from uplift.extras.papers.representations import samples
+from uplift.extras.report.comparison import compare_spectra
 from uplift.lab.runner import Row, named_lights
+from uplift.lab.study.unmirrored import fourier_basis, try_complex_multipliers
 from uplift.models import duality
 from uplift.models.moments import Moments
 
@@ -92,13 +93,9 @@ class Technique:
 
     def reconstruct(self, moments: Complex | Array, wavelengths: ArrayLike) -> Array:
         """Bounded maximum-entropy reflectances (n, N) of moments (n, C)."""
-        solve = (
-            duality.try_multipliers
-            if self.mirrored
-            else duality.try_complex_multipliers
-        )
+        solve = duality.try_multipliers if self.mirrored else try_complex_multipliers
         multipliers = duality.multipliers_from_moments(moments, solve)
-        waves = duality.fourier_basis(self.phase(wavelengths), moments.shape[1])
+        waves = fourier_basis(self.phase(wavelengths), moments.shape[1])
         return 0.5 + np.arctan((multipliers @ waves.T).real) / np.pi
 
 
@@ -119,7 +116,7 @@ class MomentsStudy:
     """Errors of every entry for every technique and number of moments.
 
     ``names``, ``atlases``: names and atlases of the E entries. ``measured`` (E, N):
-    reflectances at `uplift.extras.scene.representations.samples.wavelengths`.
+    reflectances at `uplift.extras.papers.representations.samples.wavelengths`.
     ``errors`` (T, max_moments + 1, E, len(MEASURES)): errors, by the order of the
     techniques and by moments from 0.
     """
@@ -188,11 +185,8 @@ def study_moments(
         moments = technique.moments(measured, samples.wavelengths(), count)
         spectra = technique.reconstruct(moments, observer.grid())
         colours = [lab(each @ d65.xyz.T, d65.white) for each in (spectra, original)]
-        columns = [
-            delta_e_1976(*colours),
-            delta_e_under(lights, spectra, original),
-            rms_difference(spectra, original),
-        ]
+        found = compare_spectra(original, spectra, lights)
+        columns = [delta_e_1976(*colours), found.delta_e, found.rms]
         errors.append(np.column_stack(columns))
     shape = (len(techniques), counts, len(measured), len(MEASURES))
     origins: list[str] = []

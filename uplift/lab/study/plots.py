@@ -14,7 +14,7 @@ from uplift.extras.colour.light_sets import NARROW_BAND_LIGHT
 from uplift.extras.pages.figure import ACCENT, BAND, HIGHLIGHT, write_figure
 from uplift.extras.pages.marks import density, line, threshold
 from uplift.extras.pages.panels import Axis, Dot, Panel, draw, spectra_panel
-from uplift.extras.scene.representations import samples
+from uplift.extras.papers.representations import samples
 from uplift.lab.runner import Row
 from uplift.lab.study.moments import (
     ALL_ATLASES,

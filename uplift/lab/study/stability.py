@@ -20,8 +20,8 @@ from uplift.colorimetry import observer
 from uplift.colorimetry.object_colours import solid
 from uplift.common.errors import UpliftWarning, unknown_name
 from uplift.common.progress import ProgressCallback, ignore_progress, reported
+from uplift.extras.timing import stopwatch
 from uplift.lab.runner import Row
-from uplift.lab.timing import stopwatch
 from uplift.lattice.point_table import Status
 from uplift.models.sigmoid import Sigmoid
 from uplift.pipeline.build import build

@@ -228,7 +228,7 @@ def test_sources_outside_the_folder_of_the_plan_are_refused(plan_file, key, name
     assert caught.value.problem.startswith(
         f"scene.{key}[0].path must lie in the folder of this file, got"
     )
-    assert caught.value.hint == "plan the scene again"
+    assert caught.value.hint
 
 
 def test_a_plan_is_written_where_it_can_be_read(planned, kitchen, tmp_path):

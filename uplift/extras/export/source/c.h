@@ -19,3 +19,9 @@
 #define UP_READS
 #define UP_TABLE
 #define UP_ROW(name, index) const float *name = up_table + (index) * UP_STRIDE
+#include "loops.c"
+#include "numbers.c"
+#include "host.c"
+${program}
+#include "loops_end.c"
+#endif

@@ -1,23 +1,3 @@
-/* A spectral uplifting cube: linear RGB in, reflectances out, in single precision.
-
-   Written by uplift ${version} from the cube ${digest}.
-   RGB is linear ${space} under ${illuminant} for the ${observer}; ${entries} atlas entries. Mode ${mode}.
-
-   ${overview} */
-${macros}
-#ifdef UP_VEC4
-
-/* Copy the row of a lattice point or entry: UP_COUNT numbers of a spectrum, and the tag of a point, filled up with 0. */
-void up_load_row(int index, inout float row[UP_STRIDE])
-{
-    for (int t = 0; t < UP_STRIDE / 4; ++t) {
-        UP_VEC4 texel = up_texel(index * (UP_STRIDE / 4) + t);
-        for (int c = 0; c < 4; ++c) row[4 * t + c] = texel[c];
-    }
-}
-
-#endif
-
 /* Position of the list of entries whose boxes touch the cell above a lattice point, 0 for none; it is negative where
    answers in the cell are moved. Its fraction is 1/2 at points where coefficients are moved, 0 at others. */
 UP_FUNCTION float up_tag(UP_READS int index)
@@ -692,7 +672,19 @@ UP_FUNCTION void up_answer(
 }
 
 #else
-UP_ALIASES
+
+/* Where all nodes have their own colours, a colour is found by its place, and its answer is the mixture. */
+UP_FUNCTION int up_find(UP_READS UP_IN float rgb[3], UP_OUT float place[UP_PLACE])
+{
+    return up_locate(UP_TABLE rgb, place);
+}
+
+UP_FUNCTION void up_answer(
+    UP_READS UP_OUT float place[UP_PLACE], int entry, UP_IN float wavelengths[UP_WIDTH],
+    UP_OUT float total[UP_WIDTH])
+{
+    up_blend(UP_TABLE place, entry, wavelengths, total);
+}
+
 #endif
 
-${calls}

@@ -159,7 +159,3 @@ UP_FUNCTION void up_reflectances_n(
 }
 
 #endif
-#if defined(__clang__)
-#pragma clang diagnostic pop
-#endif
-#endif

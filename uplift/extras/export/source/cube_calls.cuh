@@ -35,4 +35,3 @@ UP_FUNCTION void up_coefficients(const float *table, const float rgb[3], float c
 }
 
 #endif
-#endif

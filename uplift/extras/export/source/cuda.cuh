@@ -26,3 +26,6 @@ UP_FUNCTION float up_number(const float *table, int index)
 {
     return table[index];
 }
+#include "host.c"
+${program}
+#endif

@@ -15,3 +15,5 @@ vec4 up_texel(int index)
     return texelFetch(up_table, ivec2(index % ${columns}, index / ${columns}), 0);
 }
 
+#include "shader.glsl"
+${program}

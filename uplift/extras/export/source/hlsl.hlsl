@@ -10,3 +10,5 @@ float4 up_texel(int index)
     return up_table[index];
 }
 
+#include "shader.glsl"
+${program}

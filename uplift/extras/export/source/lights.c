@@ -1,10 +1,3 @@
-/* A spectral uplifting table of lights: linear RGB of any brightness in, spectral power out, in single precision.
-
-   Written by uplift ${version} from the table ${digest}.
-   RGB is linear ${space} for the ${observer}; ${lamps} lamps. Power 1 at all wavelengths has luminance 1, as has RGB (1, 1, 1).
-
-   ${overview} */
-${macros}
 /* Direction from white in u'v', from 0 to 4 counterclockwise from the first knot: 1 per quarter turn, by |u| + |v|. */
 UP_FUNCTION float up_angle(float u, float v)
 {
@@ -141,4 +134,3 @@ UP_FUNCTION void up_answer(
     }
 }
 
-${calls}

@@ -18,7 +18,3 @@ UP_FUNCTION void up_power(const float rgb[3], const float *wavelengths, int coun
     }
 }
 
-#if defined(__clang__)
-#pragma clang diagnostic pop
-#endif
-#endif

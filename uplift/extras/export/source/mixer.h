@@ -32,7 +32,7 @@
 #define UP_CAST(type, x) ((type)(x))
 #endif
 #define UP_FUNCTION static inline
-${loops}
+#include "loops.c"
 #define UP_BANDS ${bands}
 #define UP_DIM ${dim}
 #define UP_SIZE (3 * UP_BANDS + 3)
@@ -193,7 +193,5 @@ UP_FUNCTION void up_mix_bytes(
     up_mix(one, other, share, linear);
     for (int c = 0; c < 3; ++c) mixed[c] = up_byte(linear[c]);
 }
-#if defined(__clang__)
-#pragma clang diagnostic pop
-#endif
+#include "loops_end.c"
 #endif

@@ -29,3 +29,16 @@ float up_number(int index)
 {
     return up_texel(index / 4)[index % 4];
 }
+
+#ifdef UP_STRIDE
+
+/* Copy the row of a lattice point or entry: UP_COUNT numbers of a spectrum, and the tag of a point, filled up with 0. */
+void up_load_row(int index, inout float row[UP_STRIDE])
+{
+    for (int t = 0; t < UP_STRIDE / 4; ++t) {
+        UP_VEC4 texel = up_texel(index * (UP_STRIDE / 4) + t);
+        for (int c = 0; c < 4; ++c) row[4 * t + c] = texel[c];
+    }
+}
+
+#endif

@@ -6,7 +6,6 @@ import contextlib
 import math
 import os
 import re
-import time
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -17,14 +16,14 @@ from uplift.common.arrays import Array, StrPath, Values
 from uplift.common.errors import PassesError, UpliftWarning
 from uplift.common.files import check_output
 from uplift.common.progress import Progress, ProgressCallback, ignore_progress
+from uplift.extras.images.channels import coloured_parts
+from uplift.extras.images.counts import Counts
+from uplift.extras.images.image import Image, Part, open_image
+from uplift.extras.images.writer import OutputPart, open_writer
 from uplift.extras.scene.passes.bands import CHANNELS
 from uplift.extras.scene.passes.decoder import LARGEST, Decoder
 from uplift.extras.scene.passes.passes import Passes
 from uplift.extras.scene.passes.textures import ATTRIBUTE, pass_mark
-from uplift.extras.texture.channels import coloured_parts
-from uplift.extras.texture.colours import Counts
-from uplift.extras.texture.image import Image, Part, open_image
-from uplift.extras.texture.writer import OutputPart, open_writer
 
 FLOATS = {"half", "float", "double"}
 NUMBER = re.compile(r"\.(\d{1,2})(?=\.)")
@@ -235,8 +234,7 @@ def _write(
         for row, numbers, others in _bands(pictures, output.rows_per_band):
             colours, counted = decoder.decode(numbers)
             rows = np.concatenate([colours, others], axis=-1, dtype=np.float32)
-            bright = writer.write_rows(row + first.part.window.y, rows)
-            counts += counted + Counts(too_bright=bright)
+            counts += counted + writer.write_rows(row, rows)
             totals += np.nansum(np.clip(numbers, 0, LARGEST), axis=(0, 1), dtype=float)
             progress(Progress("rows", row + len(rows), height))
         _check_different(pictures, totals)
@@ -275,7 +273,6 @@ def _output(decoder: Decoder, first: Picture, depth: str) -> OutputPart:
         _copied_name(part.channels[index], decoder.channels) for index in first.others
     ]
     kinds = ["half" if part.types[i] == "half" else "float" for i in first.others]
-    modified = time.gmtime(first.image.path.stat().st_mtime)
     metadata = {
         name: value for name, value in part.metadata.items() if name != ATTRIBUTE
     }
@@ -285,7 +282,7 @@ def _output(decoder: Decoder, first: Picture, depth: str) -> OutputPart:
         (*decoder.channels, *names),
         (*[depth] * CHANNELS, *kinds),
         {**metadata, **decoder.header},
-        part.date or time.strftime("%Y:%m:%d %H:%M:%S", modified),
+        first.image.date(part),
     )
 
 

@@ -2,45 +2,26 @@
 B of OpenEXR.
 """
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from uplift.colorimetry import observer
-from uplift.common.arrays import Array, Floats
+from uplift.common.arrays import Array
+from uplift.extras.emission.file import emission_digest
 from uplift.extras.emission.lookup import EmissionTable
+from uplift.extras.images.converter import (
+    Band,
+    Converted,
+    ImageConverter,
+    RowConverter,
+    resolve_depth,
+)
+from uplift.extras.images.counts import Counts
 from uplift.extras.scene.passes.passes import Passes
 from uplift.extras.scene.passes.textures import band_rows, check_number, pass_header
-from uplift.extras.texture.channels import ColourChannels
-from uplift.extras.texture.colours import Counts
-from uplift.extras.texture.emission import LightUplifter, prepare_lights
-from uplift.extras.texture.image import Part
-from uplift.extras.texture.uplifter import Converted, Converter, ReadColours
+from uplift.extras.texture.emission import DEPTHS, light_power, light_reader
 
-
-@dataclass(frozen=True, eq=False)
-class PassLightUplifter(Converter):
-    """A converter of the colours of lights to the three numbers of a pass, made by
-    `prepare_light_pass`.
-
-    ``projection`` (3, 81) leads from power in the units of the table to numbers.
-    """
-
-    lights: LightUplifter
-    projection: Array
-
-    def colour_channels(self, found: ColourChannels) -> ColourChannels:
-        return self.lights.colour_channels(found)
-
-    def decoder(self, part: Part) -> ReadColours:
-        return self.lights.decoder(part)
-
-    def convert(self, rgb: Floats) -> Converted:
-        power, counts = self.lights.power(rgb)
-        numbers = power @ self.projection.T
-        negative = (numbers < 0).any(axis=-1)
-        counts += Counts(negative=int(negative.sum()))
-        return (np.maximum(numbers, 0).astype(np.float32),), counts
+NEGATIVE = "pixels-negative"
+CLAMPED = "with negative numbers: clamped to 0"
 
 
 def prepare_light_pass(
@@ -52,7 +33,7 @@ def prepare_light_pass(
     encoding: str = "auto",
     space: str | None = None,
     threads: int = 2,
-) -> PassLightUplifter:
+) -> RowConverter:
     """Prepare an emission table for images of lights of a pass.
 
     Parameters
@@ -68,7 +49,7 @@ def prepare_light_pass(
 
     Returns
     -------
-    PassLightUplifter
+    RowConverter
         The converter to pass to `uplift.extras.texture.convert`.
 
     Raises
@@ -79,27 +60,28 @@ def prepare_light_pass(
         The RGB space is unknown.
     """
     check_number(passes, number)
-    lights = prepare_lights(
-        table,
-        observer.grid(),
+    depth = resolve_depth(depth, DEPTHS, "lights")
+    reader = light_reader(table, encoding, space)
+    # (3, 81): from power in the units of the table to numbers
+    projection = table_projection(passes)[band_rows(number)]
+    grid = observer.grid()
+
+    def rows(band: Band) -> Converted:
+        _, power, counts = light_power(table, band.rgb, grid, threads)
+        numbers = power @ projection.T
+        negative = (numbers < 0).any(axis=-1)
+        counts += Counts.of(NEGATIVE, negative.sum(), CLAMPED)
+        return (np.maximum(numbers, 0).astype(np.float32),), counts
+
+    settings = {"as": "light pass", "depth": depth, **reader.settings}
+    return RowConverter(
+        reader=reader,
         depth=depth,
-        encoding=encoding,
-        space=space,
-        threads=threads,
-    )
-    settings = {"as": "light pass", "depth": lights.depth, "encoding": encoding}
-    settings |= {} if space is None else {"space": space}
-    header = {"uplift.cube": lights.header["uplift.cube"]}
-    return PassLightUplifter(
-        lights.sensor,
-        lights.depth,
-        encoding,
-        lights.out_of_gamut,
-        (),
-        header | pass_header(passes, number, settings),
-        lights=lights,
-        projection=table_projection(passes)[band_rows(number)],
-        space=lights.space,
+        header={
+            "uplift.cube": emission_digest(table.data),
+            **pass_header(passes, number, settings),
+        },
+        to_rows=ImageConverter(rows),
     )
 
 

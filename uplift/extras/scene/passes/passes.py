@@ -7,6 +7,7 @@ sharp color primaries"; Bergner et al. 2004. Here bands are chosen so that produ
 one to four reflectances keep their colours.
 """
 
+import hashlib
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
@@ -17,8 +18,11 @@ from uplift.colorimetry import observer
 from uplift.colorimetry.illuminants import Illuminant, Lamp
 from uplift.common.arrays import Array
 from uplift.common.errors import unknown_name
+from uplift.extras.files.spec import SPEC, Matrix, NotNegative, NotNegativeRow
 from uplift.extras.scene.passes.bands import Bands
-from uplift.extras.scene.passes.spectra_digest import power_digest
+
+STEPS = 1_000_000
+"""Steps of power up to the largest, by which digests do not depend on rounding."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,12 +45,14 @@ class PassesLight:
         lights and by that of this light.
     """
 
+    __pydantic_config__ = SPEC
+
     name: str
     digest: str
-    numbers: Array
-    to_xyz: Array
-    errors: Array
-    own_errors: Array
+    numbers: NotNegativeRow
+    to_xyz: Matrix
+    errors: NotNegativeRow
+    own_errors: NotNegativeRow
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,9 +71,11 @@ class PassesCamera:
         materials.
     """
 
+    __pydantic_config__ = SPEC
+
     name: str
-    matrix: Array
-    error: float
+    matrix: Matrix
+    error: NotNegative
 
 
 @dataclass(frozen=True, eq=False)
@@ -186,3 +194,13 @@ def scaled_power(illuminant: Illuminant) -> Array:
     power = observer.illuminant_spd(illuminant)
     luminance = observer.matching_functions()[:, 1]
     return power / (power @ luminance)
+
+
+def power_digest(power: Array) -> str:
+    """SHA-256 of a power (81,) relative to its largest value.
+
+    >>> power_digest(np.array([1.0, 2.0])) == power_digest(np.array([2.0, 4.0]))
+    True
+    """
+    relative = np.rint(STEPS * power / power.max()).astype("<u4")
+    return hashlib.sha256(relative.tobytes()).hexdigest()

@@ -4,28 +4,26 @@ lights, both as R, G and B of OpenEXR.
 
 import json
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from uplift.colorimetry import observer
-from uplift.colorimetry.gamut import check_method
-from uplift.common.arrays import Floats
 from uplift.common.errors import OptionError, PassesError
 from uplift.cube.file import digest
-from uplift.extras.colour.spaces import find_space
 from uplift.extras.images import exr
+from uplift.extras.images.converter import (
+    Band,
+    Converted,
+    ImageConverter,
+    RowConverter,
+    resolve_depth,
+)
+from uplift.extras.images.counts import Counts
+from uplift.extras.images.reader import SurfaceReader
 from uplift.extras.scene.passes.bands import CHANNELS
 from uplift.extras.scene.passes.file import passes_digest
 from uplift.extras.scene.passes.passes import Passes
-from uplift.extras.texture.colours import Counts, check_encoding
-from uplift.extras.texture.uplifter import (
-    Converted,
-    Converter,
-    Sampler,
-    resolve_depth,
-)
 from uplift.lookup.cube import Cube
 from uplift.lookup.node_table import prepare_products
 
@@ -89,16 +87,6 @@ def check_cube(passes: Passes, cube: Cube) -> None:
         )
 
 
-@dataclass(frozen=True, eq=False)
-class PassUplifter(Converter):
-    """A converter of colours to the three numbers of a pass, made by `prepare_pass`."""
-
-    sample: Sampler
-
-    def convert(self, rgb: Floats) -> Converted:
-        return (np.clip(self.sample(rgb), 0, 1),), Counts()
-
-
 def prepare_pass(
     cube: Cube,
     passes: Passes,
@@ -109,7 +97,7 @@ def prepare_pass(
     out_of_gamut: str = "clip",
     space: str | None = None,
     threads: int = 2,
-) -> PassUplifter:
+) -> RowConverter:
     """Prepare a cube for the textures of a pass.
 
     Parameters
@@ -127,7 +115,7 @@ def prepare_pass(
 
     Returns
     -------
-    PassUplifter
+    RowConverter
         The converter to pass to `uplift.extras.texture.convert`.
 
     Raises
@@ -141,30 +129,23 @@ def prepare_pass(
     """
     check_cube(passes, cube)
     check_number(passes, number)
-    check_encoding(encoding)
-    check_method(out_of_gamut)
+    data = cube.data
+    reader = SurfaceReader(
+        sensor=data.sensor, encoding=encoding, space=space, out_of_gamut=out_of_gamut
+    )
     depth = resolve_depth(depth, ("half", "float"), "passes")
-    settings = {
-        "as": "pass",
-        "depth": depth,
-        "encoding": encoding,
-        "out_of_gamut": out_of_gamut,
-    }
-    settings |= {} if space is None else {"space": space}
     weights = passes.bands.weights[band_rows(number)]
-    sample = prepare_products(cube.data, observer.grid(), weights, threads)
-    header = exr.attributes(cube.data) | pass_header(passes, number, settings)
+    sample = prepare_products(data, observer.grid(), weights, threads)
+
+    def rows(band: Band) -> Converted:
+        return (band.weighted(np.clip(sample(band.rgb), 0, 1)),), Counts()
+
+    settings = {"as": "pass", "depth": depth, **reader.settings}
+    header = exr.attributes(data) | pass_header(passes, number, settings)
     # Numbers of bands are not colours of an RGB space.
     del header["chromaticities"]
-    return PassUplifter(
-        cube.data.sensor,
-        depth,
-        encoding,
-        out_of_gamut,
-        (),
-        header,
-        sample=sample,
-        space=None if space is None else find_space(space),
+    return RowConverter(
+        reader=reader, depth=depth, header=header, to_rows=ImageConverter(rows)
     )
 
 

@@ -1,7 +1,7 @@
 /* The module in uplift.js: uplift.h for WebAssembly. */
 #define UPLIFT_NO_FILES
 #define UPLIFT_IMPLEMENTATION
-#include "uplift.h"
+#include <uplift.h>
 
 /* The digest of the source, and the compiler. */
 const char uplift_source[] = UPLIFT_SOURCE " clang " __clang_version__;

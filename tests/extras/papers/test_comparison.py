@@ -1,0 +1,201 @@
+"""Comparison of representations: errors are those of single products, the best filter
+is found, pictures have all.
+"""
+
+import itertools
+from collections import Counter
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose, assert_array_equal
+
+from tests.browsing import check_page
+from tests.conftest import MACBETH
+from tests.helpers import raises, warns
+from tests.pages import Page, markers, tooltips
+from tools.render_docs import pick, where
+from uplift.atlas.atlas import Atlas
+from uplift.atlas.resampling import on_grid
+from uplift.atlas.sources import read_atlas
+from uplift.colorimetry.delta_e import delta_e_2000, lab
+from uplift.common.errors import AtlasError, OptionError, UpliftError
+from uplift.extras.papers.representations.compare import (
+    Scene,
+    cheapest,
+    compare,
+    error_statistics,
+    make_scene,
+    represent,
+)
+from uplift.extras.papers.representations.filters import filtered_point_samples
+from uplift.extras.papers.representations.fitted import scene_representations
+from uplift.extras.papers.representations.pictures import (
+    cost_panels,
+    names,
+    render_comparison,
+)
+from uplift.extras.papers.representations.registry import find_representation
+from uplift.extras.papers.representations.samples import (
+    linear,
+    wavelengths,
+    xyz_weights,
+)
+from uplift.extras.papers.representations.tuning import (
+    COARSE_STRIDE,
+    NONE,
+    candidates,
+    parameters,
+    tune_filters,
+)
+
+
+@pytest.fixture(scope="module")
+def checker():
+    return make_scene({"macbeth": read_atlas(MACBETH)})
+
+
+@pytest.fixture(scope="module")
+def found(checker):
+    compared = ["CS15", "TM9", "PS16", "PS32", "RS16", "RS32", "RE16", "RE32"]
+    return compare(checker, list(map(find_representation, compared)), quick=True)
+
+
+def test_errors_match_explicit_loops(checker):
+    part = checker.sets[1]
+    samples = find_representation("PS16")
+    surfaces = samples.encode_surface(checker.surfaces)
+    apart = []
+    for power in part.powers:
+        white = power @ xyz_weights()
+        products = samples.multiply(samples.encode_light(power[None]), surfaces)
+        dense = (power * checker.surfaces) @ xyz_weights()
+        apart += [delta_e_2000(lab(samples.xyz(products), white), lab(dense, white))]
+    quantiles = np.quantile(apart, (0.5, 0.025, 0.25, 0.75, 0.975))
+    expected = [np.mean(apart), np.std(apart), *quantiles]
+    actual = list(error_statistics(samples, part).values())
+    assert_allclose(actual, expected, rtol=1e-9)
+
+
+def test_result_that_is_not_finite_is_an_error(checker):
+    broken = linear("broken", "broken", np.full((401, 3), np.nan), np.eye(3))
+    with raises(UpliftError, "error"):
+        compare(checker, [broken], quick=True)
+
+
+def test_results_are_ranked_within_their_sets(checker, found):
+    assert_allclose(checker.powers @ xyz_weights()[:, 1], 1)
+    assert list(found.sets) == ["smooth", "spiky"]
+    for name in found.sets:
+        means = [row["mean"] for row in found.of(name)]
+        assert means == sorted(means)
+        assert len(means) == 8
+        row = pick(found.of(name), representation="TM9")
+        assert (row["floats"], row["light_floats"]) == (9, 81)
+        assert 0 < row["ns_least"] <= row["ns"] <= row["ns_most"]
+
+
+def test_findings_of_the_thesis_hold_for_the_colorchecker(found):
+    smooth, spiky = (
+        {row["representation"]: row["mean"] for row in found.of(lights)}
+        for lights in found.sets
+    )
+    assert all(smooth[f"{family}32"] < 1 for family in ("PS", "RS", "RE"))
+    assert spiky["PS16"] > 10 * smooth["PS16"]
+    assert spiky["RS16"] < spiky["PS32"] < spiky["PS16"]
+    assert max(spiky["CS15"], spiky["RE16"]) < spiky["RS16"]
+
+
+@pytest.mark.parametrize("name", ["PF32", "RS16", "PS16:gaussian:7:0.5", "TM9", "SG3"])
+def test_spectra_have_the_colours_of_the_representation(checker, name):
+    made = find_representation(name)
+    smooth = checker.sets[0]
+    atlases = represent(made, Scene((smooth,)), read_atlas(MACBETH).names)
+    surfaces, powers = (
+        on_grid(atlas, wavelengths()) @ xyz_weights() for atlas in atlases
+    )
+    code = made.encode_surface(smooth.reflectances)
+    if name[:2] in ("TM", "SG"):
+        # A linear code of samples is that of a light too.
+        code = made.multiply(made.encode_light(np.ones_like(smooth.reflectances)), code)
+    assert_allclose(surfaces, made.xyz(code), atol=1e-12)
+    light_xyz = made.xyz(made.encode_light(smooth.powers))
+    assert_allclose(powers / powers[:, 1:2], light_xyz / light_xyz[:, 1:2], atol=1e-12)
+
+
+def test_negative_lobes_of_a_filter_are_clipped_with_a_warning(checker):
+    filtered = find_representation("PF16")
+    with warns("entry-clipped"):
+        _, lights = represent(filtered, checker, read_atlas(MACBETH).names)
+    assert min(entry.values.min() for entry in lights) == 0
+
+
+def test_named_lights_form_one_set():
+    atlases = {"macbeth": read_atlas(MACBETH)}
+    (part,) = make_scene(atlases, ["HP1", "LED-B3", "HP1"]).sets
+    assert part.title == "given lights (HP1, LED-B3)"
+    with raises(AtlasError):
+        make_scene({"none": Atlas()})
+
+
+def test_surfaces_count_first_then_lights_then_errors():
+    rows = [
+        {"q97_5": 0.2, "floats": 32, "light_floats": 8},
+        {"q97_5": 0.8, "floats": 9, "light_floats": 12},
+        {"q97_5": 0.9, "floats": 9, "light_floats": 12},
+        {"q97_5": 0.7, "floats": 9, "light_floats": 81},
+        {"q97_5": 1.1, "floats": 3, "light_floats": 8},
+    ]
+    chosen = [cheapest(rows, target) for target in (2.0, 1.0, 0.75, 0.5, 0.1)]
+    assert chosen == [rows[4], rows[1], rows[3], rows[0], None]
+    for target in (0, float("nan"), float("inf")):
+        with raises(OptionError, "option"):
+            cheapest(rows, target)
+
+
+@pytest.fixture(scope="module")
+def tuned(checker):
+    kinds = ("tent", "lanczos", "mitchell")
+    return tune_filters(checker, COARSE_STRIDE, kinds, (16,))
+
+
+def test_the_best_of_all_candidates_is_found(checker, tuned):
+    for part, kind in itertools.product(checker.sets, ("tent", "lanczos")):
+        means = {}
+        for tried in candidates(kind, COARSE_STRIDE):
+            errors = error_statistics(filtered_point_samples(16, tried), part)
+            means[errors["mean"]] = parameters(tried)
+        best = pick(tuned, lights=part.name, filter=kind)
+        assert (best["mean"], best["parameters"]) == min(means.items())
+
+
+def test_filters_improve_point_sampling_under_spiky_lights(tuned):
+    means = {row["filter"]: row["mean"] for row in where(tuned, lights="spiky")}
+    assert max(means["mitchell"], means["lanczos"]) < 0.3 * means[NONE]
+
+
+def test_page_has_every_representation_fits_and_is_accessible(found, tmp_path):
+    html = render_comparison(found)
+    shown = [row["title"] for row in tooltips(html)]
+    assert shown == names(found)
+    assert markers(html) == Counter(
+        itertools.product(range(len(cost_panels(found))), range(len(shown)))
+    )
+    tables = [[row[0].parts[0] for row in table[1:]] for table in Page(html).tables]
+    for name in found.sets:
+        assert [row["representation"] for row in found.of(name)] in tables
+    check_page(html, tmp_path)
+
+
+def test_representations_fitted_to_a_scene_follow_its_products():
+    scene = make_scene({"macbeth": read_atlas(MACBETH)}, ("A", "FL11")).thinned(8)
+    named = {each.name: each for each in scene_representations(scene)}
+    (lights,) = scene.sets
+    errors = {
+        name: error_statistics(named[name], lights)["mean"]
+        for name in ("FW5", "FW12", "BF5", "CM9", "CM17")
+    }
+    assert errors["FW12"] < 0.1 < errors["FW5"] < 2
+    assert errors["CM17"] < errors["CM9"] < 0.5
+    assert errors["BF5"] < 6
+    encode = named["FW5"].encode_light
+    assert_array_equal(encode(lights.powers[::-1]), encode(lights.powers)[::-1])

@@ -1,0 +1,108 @@
+"""Gaussian quadrature for sampled weights: known rules, an exact oracle, polynomial
+exactness, undefined orders.
+"""
+
+from fractions import Fraction
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from numpy.polynomial import legendre
+from numpy.testing import assert_allclose, assert_array_equal
+
+from tests.helpers import raises
+from uplift.common.errors import OptionError
+from uplift.extras.papers.wavelengths.quadrature import gauss_rule, interpolatory_rule
+
+POINTS = np.arange(380.0, 771.0)
+BELL = np.exp(-(((POINTS - 560) / 40) ** 2))
+
+
+def _moment_error(rule, points, masses, degree):
+    """Largest error over Legendre polynomials up to ``degree``, relative to the sum of
+    the absolute masses.
+    """
+    middle = (points[0] + points[-1]) / 2
+    half = (points[-1] - points[0]) / 2
+    exact = masses @ legendre.legvander((points - middle) / half, degree)
+    result = rule.weights @ legendre.legvander((rule.nodes - middle) / half, degree)
+    return float(np.abs(result - exact).max() / np.abs(masses).sum())
+
+
+@pytest.mark.parametrize("order", [1, 2, 5, 16, 40])
+def test_legendre_rule_as_masses_gives_the_smaller_legendre_rule(order):
+    points, masses = legendre.leggauss(100)
+    nodes, weights = legendre.leggauss(order)
+    rule = gauss_rule(points, masses, order)
+    assert_allclose(rule.nodes, nodes, atol=1e-12)
+    assert_allclose(rule.weights, weights, atol=1e-11)
+
+
+@pytest.mark.parametrize("order", [1, 3, 8, 20])
+def test_rule_is_exact_to_degree_2n_minus_1_and_no_further(order):
+    rule = gauss_rule(POINTS, BELL, order)
+    assert len(rule) == order
+    assert (rule.weights > 0).all()
+    assert _moment_error(rule, POINTS, BELL, 2 * order - 1) < 1e-12
+    if order <= 8:
+        assert _moment_error(rule, POINTS, BELL, 2 * order) > 1e-9
+
+
+def _exact_nodes(points, masses, order):
+    """Roots of the orthogonal polynomial from its moments, by elimination
+    in fractions.
+    """
+    powers = np.arange(2 * order)[:, None]
+    moments = (np.array(points, dtype=object) ** powers) @ np.array(masses)
+    rows = np.array([moments[i : i + order + 1] for i in range(order)]) * Fraction(1)
+    rows[:, -1] *= -1
+    for i in range(order):
+        pivot = i + np.flatnonzero(rows[i:, i])[0]
+        rows[[i, pivot]] = rows[[pivot, i]]
+        rows[i] /= rows[i, i]
+        for k in set(range(order)) - {i}:
+            rows[k] -= rows[k, i] * rows[i]
+    return np.roots([1.0, *rows[::-1, -1].astype(float)])
+
+
+@given(
+    st.lists(st.integers(-9, 9), min_size=6, max_size=12).filter(
+        lambda m: sum(map(bool, m)) > 4
+    ),
+    st.integers(1, 4),
+)
+def test_nodes_agree_with_elimination_in_fractions(masses, order):
+    points = list(range(len(masses)))
+    try:
+        result = gauss_rule(points, masses, order)
+    except OptionError:
+        return
+    expected = np.sort_complex(_exact_nodes(points, masses, order))
+    gap = np.diff(result.nodes).min() if order > 1 else 1.0
+    if gap > 1e-2:  # np.roots is inaccurate for nearly double roots
+        assert_allclose(result.nodes, expected, atol=1e-5)
+
+
+@pytest.mark.parametrize(
+    ("masses", "order", "reason"),
+    [
+        ([1, 0, -1], 1, "no polynomial"),
+        ([1, 1, -1], 1, "a node lies at -1.0, outside 0 to 2"),
+        ([1, -4, 1], 2, "not real"),
+        ([-4, -12, 12, -2], 2, "coincide"),
+    ],
+)
+def test_undefined_order_states_its_reason(masses, order, reason):
+    with raises(OptionError, "undefined-rule") as caught:
+        gauss_rule(range(len(masses)), masses, order)
+    assert reason in caught.value.problem
+
+
+@pytest.mark.parametrize(
+    "nodes", [[560.0], [631.4, 490.9, 557.7], np.linspace(400, 700, 12)]
+)
+def test_interpolatory_rule_is_exact_below_its_number_of_nodes(nodes):
+    rule = interpolatory_rule(nodes, POINTS, BELL)
+    assert_array_equal(rule.nodes, np.sort(nodes))
+    assert _moment_error(rule, POINTS, BELL, len(nodes) - 1) < 1e-12

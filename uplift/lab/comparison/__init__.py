@@ -1,3 +1,0 @@
-"""Comparison of spectral representations for renderers: errors, cost, filters,
-recommendations and pictures.
-"""
