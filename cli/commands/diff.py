@@ -8,9 +8,10 @@ import click
 
 from uplift.colorimetry.illuminants import Illuminant
 from uplift.common.text import pluralise
+from uplift.extras.images.sequences import expand_patterns
 
 from .. import options
-from ..inputs import expand_patterns, read_pictures
+from ..inputs import read_pictures
 from ..output.console import make_table, paragraph, print_json, say, show
 from ..output.progress import progress_bar
 from ..outputs import check_outputs

@@ -13,9 +13,10 @@ import click
 
 from uplift.common.errors import UpliftWarning
 from uplift.common.text import pluralise
+from uplift.extras.images.sequences import expand_patterns
 
 from .. import options
-from ..inputs import expand_patterns, read_pictures
+from ..inputs import read_pictures
 from ..output.console import make_table, paragraph, print_json, show
 from ..output.diagnostics import warn
 from ..output.notes import collect_notes, print_notes

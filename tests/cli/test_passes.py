@@ -124,7 +124,7 @@ def test_query(run, ask, passes):
     assert_allclose(grey["passes"], 0.5, atol=0.03)
     assert np.shape(red["passes"]) == (2, 3)
     shown = run("query 0.5 0.5 0.5 --passes passes.toml").stdout
-    assert "pass 2" in shown
+    assert "linear RGB" in shown
     rows = run("query 0.5 0.5 0.5 --passes passes.toml --format csv").stdout
     assert rows.splitlines()[0] == "r,g,b,pass,R,G,B"
     assert len(rows.splitlines()) == 3

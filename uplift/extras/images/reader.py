@@ -76,8 +76,9 @@ class Reader(ABC):
     @property
     def settings(self) -> dict[str, str]:
         """Description for the header of textures."""
-        space = {} if self.space is None else {"space": self.space}
-        return {"encoding": self.encoding, **space}
+        names = ("encoding", "out_of_gamut", "space")
+        values = {name: getattr(self, name, None) for name in names}
+        return {name: value for name, value in values.items() if value is not None}
 
     def channels(self, found: ColourChannels) -> ColourChannels:
         """How the colour channels that a part has are read: by default as found."""
@@ -119,19 +120,20 @@ class Reader(ABC):
         """Return warnings about parts whose space is not known, by unusable statements
         and assumptions, and about spectra, in place of which R, G and B are read.
         """
-        problems = dict[str, str]()
+        assumed = {}
         if self.space is None:
-            for part in image.parts:
-                problems[self._assumption(part)] = "colour-space-assumed"
+            assumed = dict.fromkeys(map(self._assumption, image.parts))
+        warnings = [
+            UpliftWarning(problem, code="colour-space-assumed", path=image.path)
+            for problem in assumed
+            if problem
+        ]
         names = chain.from_iterable(part.channels for part in image.parts)
         if any(map(SPECTRAL.fullmatch, names)):
             problem = "the spectra of the image are not used: its R, G and B are"
-            problems[problem] = "spectra-not-used"
-        return tuple(
-            UpliftWarning(problem, code=code, path=image.path)
-            for problem, code in problems.items()
-            if problem
-        )
+            unused = UpliftWarning(problem, code="spectra-not-used", path=image.path)
+            warnings.append(unused)
+        return tuple(warnings)
 
     def _assumption(self, part: Part) -> str:
         """Return what is assumed about the space of a part, empty if nothing is."""
@@ -208,12 +210,6 @@ class SurfaceReader(Reader):
     def __post_init__(self) -> None:
         super().__post_init__()
         check_method(self.out_of_gamut)
-
-    @property
-    def settings(self) -> dict[str, str]:
-        """Description for the header of textures."""
-        encoding, *space = super().settings.items()
-        return dict([encoding, ("out_of_gamut", self.out_of_gamut), *space])
 
     def decoder(self, part: Part) -> "Decoder":
         """Make the decoder of a part.
