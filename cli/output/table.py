@@ -49,7 +49,7 @@ class Table:
     headings: Mapping[str, str] = field(default_factory=dict)
     title: str = ""
     digits: str = ".3f"
-    formats: Mapping[str, Format] = field(default_factory=dict)
+    formats: Mapping[str, Any] = field(default_factory=dict)
 
     def print_csv(self) -> None:
         """Print CSV, each row before the next one is computed."""
