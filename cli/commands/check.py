@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from uplift.common.progress import ProgressCallback
     from uplift.lookup.cube import Cube
 
-REBUILDING = ("files", "folders", "update", "style", "quiet", "verbose")
+REBUILDING = ("files", "folders", "update", "style", "quiet")
 """Parameters that apply to cubes which are rebuilt."""
 APPLICABLE = {
     "kit": ("files", "force"),
@@ -103,7 +103,6 @@ NEEDS = {
 @options.plot("Draw the picture, the one expected, and ΔE00")
 @options.table_or_json
 @options.quiet
-@options.verbose
 @options.force
 def command(
     files: Sequence[str],
@@ -147,9 +146,8 @@ def _rebuild_all(
     update: bool,
     style: str,
     quiet: bool,
-    verbose: bool,
 ) -> None:
-    with progress_bar(quiet=quiet, verbose=verbose) as progress:
+    with progress_bar(quiet=quiet) as progress:
         results = [
             _check(Path(file), folders, progress) for file in dict.fromkeys(files)
         ]
