@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from uplift.common.progress import ProgressCallback
     from uplift.lookup.cube import Cube
 
-REBUILDING = ("folders", "update", "quiet", "verbose")
+REBUILDING = ("folders", "update", "quiet")
 """Parameters that apply to cubes which are rebuilt."""
 NEEDS = {
     "light": "--renderer",
@@ -111,7 +111,6 @@ HEADINGS = {
 @options.plot("Draw the picture, the one expected, and ΔE00")
 @options.table_or_json
 @options.quiet
-@options.verbose
 @options.force
 def command(
     files: Sequence[str],
@@ -178,9 +177,8 @@ def _rebuild_all(
     folders: Sequence[str],
     update: bool,
     quiet: bool,
-    verbose: bool,
 ) -> None:
-    with progress_bar(quiet=quiet, verbose=verbose) as progress:
+    with progress_bar(quiet=quiet) as progress:
         checks = [_check(file, folders, progress) for file in dict.fromkeys(files)]
     records = [check.record for check in checks]
     if style == "json" or not quiet:
