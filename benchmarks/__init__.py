@@ -22,7 +22,7 @@ from uplift.common.arrays import Array
 from uplift.common.errors import UpliftWarning
 from uplift.common.files import write_text
 from uplift.common.progress import Progress
-from uplift.extras.report.measures import mean_p95_max
+from uplift.extras.report.comparison import mean_p95_max
 from uplift.extras.timing import commit, environment, stopwatch
 
 ROOT = Path(__file__).parents[1]

@@ -14,7 +14,7 @@ from benchmarks.materials import Materials, inside, spectra
 from uplift.colorimetry import observer
 from uplift.common.arrays import Indices
 from uplift.extras.colour.light_sets import RELIGHT_LIGHTS
-from uplift.extras.report.measures import delta_e_under
+from uplift.extras.report.comparison import delta_e_under
 from uplift.extras.scene.advice import advise, uncertainty
 from uplift.extras.texture.scene_colours import ColourSet, PixelSample
 from uplift.lab.look_alikes import families_like

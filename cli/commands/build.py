@@ -14,9 +14,9 @@ import click
 
 from uplift.common.errors import OptionError, OutputError, UpliftWarning
 from uplift.common.text import format_value, parse_float, pluralise
+from uplift.extras.images.sequences import expand_patterns
 
 from .. import options, sensor_options
-from ..inputs import expand_patterns
 from ..output.console import paragraph, say
 from ..output.diagnostics import warn
 from ..output.notes import collect_notes, print_notes
@@ -248,7 +248,7 @@ def command(
     notes = [*task.notes, *notes]
     cube.save(path, force=force)
     if slices is not None:
-        from uplift.extras.images.exr import write_slices
+        from uplift.extras.images.slices import write_slices
 
         write_slices(cube.data, slices, force=force)
     if quiet:

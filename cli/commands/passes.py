@@ -9,18 +9,15 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from uplift.extras.images.sequences import expand_patterns
+
 from .. import options
-from ..inputs import expand_patterns, read_atlases
-from ..output.console import paragraph, print_json, say
+from ..inputs import read_atlases
+from ..output.console import paragraph, say
 from ..output.diagnostics import warn
-from ..output.passes import (
-    mean_rows,
-    passes_count,
-    passes_fields,
-    print_light_numbers,
-    print_passes,
-)
+from ..output.passes import passes_count, passes_fields, passes_tables
 from ..output.progress import progress_bar
+from ..output.table import print_result
 from ..outputs import check_outputs
 from ..startup import enable_jit_cache
 from .passes_decoding import decode, passes_argument, recipe
@@ -133,19 +130,21 @@ def choose(
         chosen = library.with_camera(chosen, materials, lights, camera)
     plain = library.rgb_errors(materials, lights)
     library.write_passes(chosen, output, force=force)
+    rgb = [[*row.tolist(), float(row.mean())] for row in plain]
+    data = {"output": output, **passes_fields(chosen), "rgb": rgb}
+    print_result(style, data, *passes_tables(chosen, {}))
     if style == "json":
-        print_json({"output": output, **passes_fields(chosen), "rgb": mean_rows(plain)})
         return
-    print_passes(chosen)
+    named = passes_count(chosen)
     say()
     paragraph(
         f"Plain RGB rendering is off by a mean ΔE00 of {plain.mean():.2f} on the same "
-        f"paths, {passes_count(chosen)} by {chosen.error:.2f}."
+        f"paths, {named} by {chosen.error:.2f}."
     )
     if chosen.camera is not None:
         name = chosen.camera.name
         paragraph(f"Raw values of {name} are off by {chosen.camera.error:.1%}.")
-    say(f"{output}: {passes_count(chosen)}", err=True)
+    say(f"{output}: {named}", err=True)
 
 
 def _materials(
@@ -190,12 +189,8 @@ def info(passes_path: str, lights: Sequence[Illuminant], style: str) -> None:
 
     passes = read_passes(passes_path)
     others = {str(light): _light_numbers(passes, light) for light in lights}
-    if style == "json":
-        print_json({**passes_fields(passes), "other_lights": others})
-        return
-    print_passes(passes)
-    for name, numbers in others.items():
-        print_light_numbers(name, numbers)
+    data = {**passes_fields(passes), "other_lights": others}
+    print_result(style, data, *passes_tables(passes, others))
 
 
 def _light_numbers(passes: Passes, light: Illuminant) -> list[float]:

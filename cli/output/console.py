@@ -105,8 +105,22 @@ def print_json(values: Any, indent: int | None = 2) -> None:
 
 def json_output(values: Any, indent: int | None = None) -> str:
     """Return standard JSON in the characters that standard output has."""
-    is_unicode = (sys.stdout.encoding or "utf-8").lower().startswith("utf")
-    return json_text(values, indent, ascii_only=not is_unicode)
+    return json_text(values, indent, ascii_only=not _has_unicode())
+
+
+def json_row(values: Any) -> str:
+    """Return the JSON of one of many rows of finite numbers, which pydantic writes five
+    times as fast.
+    """
+    if not _has_unicode():
+        return json_output(values)
+    from pydantic_core import to_json
+
+    return json_escapes(to_json(values).decode())
+
+
+def _has_unicode() -> bool:
+    return (sys.stdout.encoding or "utf-8").lower().startswith("utf")
 
 
 def print_json_answers(blocks: Iterable[Iterable[str]], *, single: bool) -> None:

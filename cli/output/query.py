@@ -43,12 +43,15 @@ LARGEST = 1e30
 def answer_rows(answers: Answers, block: QueryBlock) -> list[dict[str, Any]]:
     """Return the answers of a block as plain values for JSON."""
     from uplift.extras.colour.coordinates import coordinates
+    from uplift.extras.colour.srgb import hex_codes as srgb_codes
 
     count = len(block)
     lights = {}
-    for light, (rgb, codes) in answers.light_colours(block).items():
-        xyz = as_lists(block.light_xyz[light])
-        lights[light] = _rows({"srgb": as_lists(rgb), "hex": codes, "xyz": xyz}, count)
+    for lit, display in zip(answers.lights, answers.displays, strict=True):
+        xyz = block.light_xyz[lit.name]
+        rgb = (display.xyz_to_rgb @ xyz[..., None])[..., 0]
+        shown = {"srgb": as_lists(rgb), "hex": srgb_codes(rgb), "xyz": as_lists(xyz)}
+        lights[lit.name] = _rows(shown, count)
     errors = {}
     for light, values in block.light_errors.items():
         if not isnan(values[0, 0]):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from itertools import chain
 from numbers import Real
@@ -15,6 +15,7 @@ from .console import (
     emit,
     has_colours,
     json_output,
+    json_row,
     paragraph,
     print_csv,
     print_json,
@@ -26,6 +27,8 @@ if TYPE_CHECKING:
     from rich.text import Text
 
 Row = Mapping[str, Any]
+Format = str | Callable[[Any], Any]
+"""A format of numbers, or a function that returns the text of a cell."""
 GAP = 2
 """Characters between columns."""
 UNKNOWN = "–"
@@ -46,7 +49,7 @@ class Table:
     headings: Mapping[str, str] = field(default_factory=dict)
     title: str = ""
     digits: str = ".3f"
-    formats: Mapping[str, Any] = field(default_factory=dict)
+    formats: Mapping[str, Format] = field(default_factory=dict)
 
     def print_csv(self) -> None:
         """Print CSV, each row before the next one is computed."""
@@ -159,12 +162,11 @@ def print_json_rows(rows: Iterable[Row], *, single: bool) -> None:
     """Print a single row as a JSON object, or else an array of rows, each before the
     next one is computed.
     """
-    texts = map(json_output, rows)
     if single:
-        emit(*texts)
+        emit(*map(json_output, rows))
         return
     before = "[\n"
-    for text in texts:
-        sys.stdout.write(before + text)
+    for row in rows:
+        sys.stdout.write(before + json_row(row))
         before = ",\n"
     emit("\n]")

@@ -10,7 +10,7 @@ from tests.conftest import MACBETH
 from tests.helpers import quiet_build, warns
 from uplift.colorimetry import observer
 from uplift.colorimetry.delta_e import delta_e_spectra
-from uplift.extras.report.measures import delta_e_under
+from uplift.extras.report.comparison import delta_e_under
 from uplift.extras.texture.scene_colours import ColourSet
 from uplift.lookup.cube import Cube
 

@@ -46,6 +46,8 @@ def json_escapes(text: str) -> str:
     """Escape the same characters in JSON text, which keeps its meaning. Line breaks
     between values stay.
     """
+    if text.isprintable():
+        return text
     # Within strings the encoder has escaped line breaks and tabs.
     return _UNPRINTABLE.sub(
         lambda match: match[0] if match[0] in "\n\r\t" else json.dumps(match[0])[1:-1],

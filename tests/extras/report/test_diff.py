@@ -43,8 +43,8 @@ def changed(small_cube):
 
 def test_the_node_that_changed_is_the_worst(small_cube, changed):
     found = diff_cubes({"a": small_cube, "b": changed}, LIGHTS)
-    assert found.nodes.worst(3)[0] == 210
-    assert found.entries.largest.max() == 0
+    assert found.nodes.worst_rows(3)[0] == 210
+    assert found.entries.largest == 0
     rgb = small_cube.data.lattice.points[210]
     nm = small_cube.data.sensor.wavelengths
     expected = delta_e_spectra(
@@ -86,7 +86,7 @@ def test_images_json_and_page(small_cube, changed):
     image = np.full((2, 3, 3), 0.9)
     image[0, 0] = small_cube.data.lattice.points[210]
     found = diff_cubes({"a": small_cube, "b": changed}, LIGHTS, {"image.png": image})
-    assert found.images[0].worst(1).tolist() == [0]
+    assert found.images[0].worst_rows(1).tolist() == [0]
     assert found.images[0].delta_e.shape == (6, 2)
     figures = json.loads(json.dumps(to_json(found, 0.01, 2), allow_nan=False))
     assert [row["moved"] for row in figures["differences"] if row["set"] == "nodes"][
@@ -100,19 +100,20 @@ def test_colours_that_one_cube_lacks_are_counted_and_fail(plain_cube, two_scenes
     first, second = two_scenes
     for cubes in ({"a": first, "b": plain_cube}, {"a": plain_cube, "b": second}):
         found = diff_cubes(cubes, LIGHTS)
-        ((name, lacking, count),) = found.lacking
-        assert (name, lacking, count) == (
-            "nodes",
-            "ab"[cubes["a"] is plain_cube],
-            np.isnan(found.nodes.largest).sum(),
-        )
+        assert found.lacking == [
+            {
+                "set": "nodes",
+                "cubes": "ab"[cubes["a"] is plain_cube],
+                "colours": np.isnan(found.nodes.worst).sum(),
+            }
+        ]
         assert not found.is_within(100)
     image = np.array([[[0.0, 0.0, 0.0], [1.0, 1.0, 1.0], [1.0, 0.0, 0.0]]])
     found = diff_cubes({"a": first, "b": second}, LIGHTS, {"image": image})
-    assert [each for each in found.lacking if each[0] == "image"] == [
-        ("image", "a", 1),
-        ("image", "b", 1),
-        ("image", "a and b", 1),
+    assert [row["cubes"] for row in found.lacking if row["set"] == "image"] == [
+        "a",
+        "b",
+        "a and b",
     ]
     assert found.largest == 0
     assert (
@@ -125,8 +126,9 @@ def test_colours_that_one_cube_lacks_are_counted_and_fail(plain_cube, two_scenes
 def test_colours_that_neither_cube_has_do_not_fail(two_scenes):
     found = diff_cubes({"a": two_scenes[0], "b": two_scenes[0]}, LIGHTS)
     assert found.is_within(0)
-    assert [cubes for _, cubes, _ in found.lacking] == ["a and b"]
-    assert len(found.nodes.compared) + found.lacking[0][2] == len(found.nodes.rgb)
+    (row,) = found.lacking
+    assert row["cubes"] == "a and b"
+    assert len(found.nodes.answered) + row["colours"] == len(found.nodes.rgb)
 
 
 def test_more_nodes_than_memory_are_refused(plain_cube, monkeypatch):

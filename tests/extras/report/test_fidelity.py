@@ -11,16 +11,15 @@ from numpy.testing import assert_allclose, assert_array_equal
 import uplift
 from tests.helpers import with_points, without_evidence
 from uplift.atlas.resampling import on_grid
-from uplift.colorimetry.observer import display_sensors, light
+from uplift.colorimetry.observer import light
 from uplift.extras.report.assessment import assess
-from uplift.extras.report.crowding import find_crowding
-from uplift.extras.report.fidelity import (
+from uplift.extras.report.entries import (
     JAKOB_HANIKA,
     WITHOUT_ATLAS,
     entry_errors,
     find_alternatives,
-    from_stored_entries,
-    take,
+    find_crowding,
+    own_entries,
 )
 from uplift.extras.report.measures import (
     MAX_LISTED,
@@ -61,7 +60,7 @@ def test_entry_errors_match_colour_science(judged, small_cube, macbeth):
             continue
         own = atlas.names.index(name)
         answered = small_cube.reflectance(atlas.rgb[own])
-        assert found.answers.spectra[row] == pytest.approx(answered, abs=1e-12)
+        assert found.answers.answers[row] == pytest.approx(answered, abs=1e-12)
         assert found.answers.rms[row] == pytest.approx(
             np.sqrt(np.mean((answered - measured[name]) ** 2)), rel=1e-9
         )
@@ -93,7 +92,7 @@ def test_lattice_errors_are_those_of_the_lattice_without_the_entries(
         found.rgb[inside],
         data.sensor.wavelengths,
     )
-    assert_allclose(found.lattice.spectra[inside], spectra, atol=1e-12)
+    assert_allclose(found.lattice.answers[inside], spectra, atol=1e-12)
     for row, spectrum in zip(inside, spectra, strict=True):
         missed = [
             delta_e(spectrum, measured[found.names[row]], sensor.illuminant)
@@ -106,23 +105,20 @@ def test_lattice_errors_are_those_of_the_lattice_without_the_entries(
 def test_entries_of_another_atlas_have_no_lattice_errors(small_cube, repository):
     other = uplift.read_atlas(repository / "atlases" / "babelcolor.txt")
     found = assess(small_cube, "small.uplift", 1, other, ("D65", "A"))
-    assert not found.own
-    assert found.sources == ("babelcolor.txt",)
+    atlas = found.values["atlas"]
+    assert (atlas["own"], atlas["files"]) == (False, ["babelcolor.txt"])
     own = ("lattice", "half_width", "half_width_codes")
     assert {getattr(found.entries, name) for name in own} == {None}
-    assert sorted((*found.entries.names, *found.out_of_gamut)) == sorted(other.names)
+    assert sorted((*found.entries.names, *atlas["outside"])) == sorted(other.names)
 
 
 def test_without_an_atlas_there_are_no_entries(small_sigmoid_cube):
     found = assess(small_sigmoid_cube, "sigmoid.uplift", 1, None, ("A",))
-    assert (found.entries, found.delta_e, found.crowding, found.sources) == (
-        None,
-        {},
-        None,
-        (),
-    )
-    assert found.standard_error.counts.sum() == 512
-    assert found.calibration is None
+    values = found.values
+    assert found.entries is None
+    assert values["atlas"]["files"] == values["entries"] == []
+    assert values["crowding"] is values["standard_error"]["calibration"] is None
+    assert sum(values["standard_error"]["delta_e_2000"]["counts"]) == 512
 
 
 def test_smoothness_matches_explicit_loops(small_cube, small_sigmoid_cube):
@@ -145,10 +141,8 @@ def test_smoothness_matches_explicit_loops(small_cube, small_sigmoid_cube):
 
 def test_crowding_matches_brute_force(crowded_cube):
     data = crowded_cube.data
-    lights = display_sensors(("A",), crowded_cube.data.sensor.observer)
-    found = find_crowding(
-        data, entry_errors(crowded_cube, from_stored_entries(data), lights)
-    )
+    errors = entry_errors(crowded_cube, own_entries(data), [light("A")])
+    found = find_crowding(data, errors)
     nodes = data.lattice.nodes
     names = data.atlas.names
     steps = np.interp(data.atlas.rgb, nodes, np.arange(len(nodes)))
@@ -170,7 +164,7 @@ def test_crowding_matches_brute_force(crowded_cube):
     assert found.entries.lattice.worst.tolist() == sorted(
         found.entries.lattice.worst, reverse=True
     )
-    assert found.lost == ()
+    assert found.lost == []
 
 
 def test_calibration_against_an_unknown_atlas(small_cube, repository):
@@ -193,52 +187,40 @@ def test_calibration_against_an_unknown_atlas(small_cube, repository):
         bounded += actual <= small_cube.error_bound(rgb)
     count = len(ratios)
     mean = sum(errors) / count
-    expected = (mean * np.quantile(ratios, 0.68), mean, within / count, bounded / count)
-    measured = found.calibration
-    found_numbers = (
-        measured.actual,
-        measured.predicted,
-        measured.within_error,
-        measured.within_bound,
-    )
-    assert found_numbers == pytest.approx(expected, abs=1e-6)
-    assert measured.count == count == len(found.entries.names)
-    assert (
-        measured.actual > measured.predicted
-    )  # these materials are unlike the ColorChecker
-    assert list(found.light_calibrations) == ["FL11"]
+    expected = {
+        "count": count,
+        "real": mean * np.quantile(ratios, 0.68),
+        "stated": mean,
+        "within_error": within / count,
+        "within_bound": bounded / count,
+    }
+    values = found.values["standard_error"]
+    assert values["calibration"] == pytest.approx(expected, abs=1e-6)
+    assert count == len(found.entries.names)
+    # These materials are unlike the ColorChecker.
+    assert values["calibration"]["real"] > values["calibration"]["stated"]
     rgb = found.entries.rgb
-    predicted = (
-        small_cube.standard_error(rgb, "FL11"),
-        small_cube.error_bound(rgb, "FL11"),
-    )
-    assert found.light_calibrations["FL11"] == check_calibration(
-        found.entries.answers.delta_e[:, 1], *predicted
-    )
-    assert found.unlike == small_cube.unlike_atlas(found.entries.rgb).mean()
+    stated = [small_cube.standard_error(rgb, "FL11")]
+    stated.append(small_cube.error_bound(rgb, "FL11"))
+    errors = found.entries.answers.delta_e[:, 1]
+    under = check_calibration(errors, np.transpose(stated))
+    assert values["calibrations"] == {"FL11": under}
+    assert values["unlike_atlas"] == small_cube.unlike_atlas(rgb).mean()
 
 
 def test_own_entries_give_no_calibration(judged, plain_cube, macbeth):
-    assert (judged.calibration, judged.light_calibrations, judged.unlike) == (
-        None,
-        {},
-        0,
-    )
-    assert judged.standard_error.counts.sum() == 512
+    values = judged.values["standard_error"]
+    assert (values["calibration"], values["calibrations"]) == (None, {})
+    assert values["unlike_atlas"] == 0
+    assert sum(values["delta_e_2000"]["counts"]) == 512
     # Stored errors are not limited by possible ones.
-    mean = judged.standard_error.mean
-    assert 0.9 < mean / judged.facts["mean_standard_error"] < 1
+    mean = values["delta_e_2000"]["mean"]
+    assert 0.9 < mean / judged.values["build"]["mean_standard_error"] < 1
     earlier = without_evidence(plain_cube)
-    unknowing = assess(earlier, "plain.uplift", 1, macbeth, ("A",))
-    assert (unknowing.standard_error, unknowing.facts["mean_standard_error"]) == (
-        None,
-        None,
-    )
-    assert (
-        check_calibration(unknowing.entries.actual, unknowing.entries.predicted, None)
-        is None
-    )
-    assert unknowing.calibration is None
+    unknowing = assess(earlier, "plain.uplift", 1, macbeth, ("A",)).values
+    assert unknowing["build"]["mean_standard_error"] is None
+    errors = unknowing["standard_error"]
+    assert errors["delta_e_2000"] is errors["calibration"] is None
 
 
 def test_failures_list_the_worst_points_first(spoilt, small_cube):
@@ -262,7 +244,7 @@ def test_all_have_the_colours_of_the_entries(judged):
     sensor = judged.data.sensor
     for other in judged.alternatives.values():
         inside = np.array(judged.entries.names) != OUTSIDE
-        spectra = other.spectra[inside]
+        spectra = other.answers[inside]
         assert_allclose(
             sensor.rgb(spectra), judged.entries.rgb[inside], rtol=0, atol=2e-3
         )
@@ -271,7 +253,7 @@ def test_all_have_the_colours_of_the_entries(judged):
 
 
 def test_jakob_hanika_is_a_sigmoid_of_a_parabola(judged):
-    answer = judged.alternatives[JAKOB_HANIKA].spectra
+    answer = judged.alternatives[JAKOB_HANIKA].answers
     t = 2 * answer - 1
     linear = t / np.sqrt(1 - t**2)  # inverse of equation 5
     wavelengths = judged.data.sensor.wavelengths
@@ -290,16 +272,12 @@ def test_the_atlas_helps(judged):
 
 
 def test_colours_outside_srgb_have_no_answer(judged):
-    inside = take(
-        judged.entries, np.flatnonzero(np.array(judged.entries.names) != OUTSIDE)
-    )
+    inside = judged.entries.take(judged.entries.names != OUTSIDE)
     target = inside.target.copy()
     target[0] = np.where(judged.data.sensor.wavelengths > 600, 1.0, 0.0)
     errors = dataclasses.replace(inside, target=target)
-    other = find_alternatives(
-        judged.data, errors, display_sensors(("A",), judged.data.sensor.observer)
-    )[WITHOUT_ATLAS]
+    other = find_alternatives(judged.data, errors, [light("A")])[WITHOUT_ATLAS]
     assert np.isnan(other.delta_e[0]).all()
-    assert np.isnan(other.spectra[0]).all()
+    assert np.isnan(other.answers[0]).all()
     assert np.isfinite(other.delta_e[1:]).all()
     assert np.isfinite(other.answered).all()

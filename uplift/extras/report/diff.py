@@ -4,25 +4,23 @@ entries changed.
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import numpy as np
 
 from uplift.colorimetry.illuminants import Illuminant
 from uplift.colorimetry.observer import lights as find_lights
+from uplift.colorimetry.sensor import Light
 from uplift.common.arrays import Array, Indices
 from uplift.common.errors import OptionError
 from uplift.common.machine import check_memory
 from uplift.common.text import pluralise
 from uplift.cube.data import CubeData, common_sensor
-from uplift.extras.report.measures import delta_e_under, mean_p95_max
+from uplift.extras.report.comparison import Comparison, delta_e_under
 from uplift.lookup.blocks import blockwise
 from uplift.lookup.cube import Cube
 
-NODES = "nodes"
-"""Name of the set of the colours of nodes."""
-ENTRIES = "entries"
-"""Name of the set of the colours of entries."""
 INVISIBLE = 5e-4
 """Largest ΔE00 that is shown as 0.000."""
 NODE_BYTES = 200
@@ -30,38 +28,38 @@ NODE_BYTES = 200
 
 
 @dataclass(frozen=True, eq=False)
-class Changes:
-    """ΔE00 between the answers of two cubes to a set of colours: nodes, entries, or the
-    pixels of an image.
+class Changes(Comparison):
+    """Differences between the answers of two cubes to a set of colours: nodes, entries,
+    or the pixels of an image.
     """
 
-    name: str
+    set: str
     rgb: Array
     """(n, 3) linear RGB."""
-    delta_e: Array
-    """(n, L) ΔE00 under each light; NaN for colours that a cube lacks."""
     lacking: Indices
     """(n,) which cubes, built for a scene, lack the colour: 0 none, 1 the first, 2 the
     second, 3 both.
     """
+    names: tuple[str, ...] = ()
+    """Names of the colours, of entries alone."""
 
-    @property
-    def largest(self) -> Array:
-        """(n,) largest ΔE00 of each colour under any light."""
-        return self.delta_e.max(axis=1)
-
-    @property
-    def compared(self) -> Array:
-        """(m, L) ΔE00 of the colours that both cubes answer."""
-        return self.delta_e[self.lacking == 0]
-
-    def worst(self, count: int) -> Indices:
-        """Rows of at most ``count`` colours that differ visibly, each once, largest
-        ΔE00 first.
+    def worst_rows(self, count: int) -> Indices:
+        """Return rows of at most ``count`` colours that differ visibly, each once,
+        largest ΔE00 first.
         """
         _, rows = np.unique(self.rgb, axis=0, return_index=True)
-        order = rows[np.argsort(-self.largest[rows], kind="stable")[:count]]
-        return order[self.largest[order] >= INVISIBLE]
+        order = rows[np.argsort(-self.worst[rows], kind="stable")[:count]]
+        return order[self.worst[order] >= INVISIBLE]
+
+    def describe(self, row: int) -> dict[str, Any]:
+        """Return the figures of a colour for JSON."""
+        return {
+            "set": self.set,
+            **({"entry": self.names[row]} if self.names else {}),
+            "rgb": self.rgb[row].tolist(),
+            "light": self.worst_light(row),
+            "delta_e": float(self.worst[row]),
+        }
 
 
 @dataclass(frozen=True, eq=False)
@@ -84,21 +82,21 @@ def pair_entries(first: CubeData, second: CubeData) -> EntryPairs:
     """Match the entries of two cubes by name."""
     before = first.atlas.with_outside
     after = second.atlas.with_outside
-    rows_before = {name: row for row, name in enumerate(before.names)}
-    rows_after = {name: row for row, name in enumerate(after.names)}
-    shared = tuple(name for name in rows_before if name in rows_after)
-    old = np.array([rows_before[name] for name in shared], dtype=np.int64)
-    new = np.array([rows_after[name] for name in shared], dtype=np.int64)
-    wavelengths = first.sensor.wavelengths
+    old_rows = {name: row for row, name in enumerate(before.names)}
+    new_rows = {name: row for row, name in enumerate(after.names)}
+    shared = tuple(name for name in old_rows if name in new_rows)
+    old = np.array([old_rows[name] for name in shared], dtype=np.int64)
+    new = np.array([new_rows[name] for name in shared], dtype=np.int64)
+    at = first.sensor.wavelengths
     return EntryPairs(
         names=shared,
         rgb=before.rgb[old],
         spectra=(
-            before.spectra.reflectance(old, wavelengths),
-            after.spectra.reflectance(new, wavelengths),
+            before.spectra.reflectance(old, at),
+            after.spectra.reflectance(new, at),
         ),
-        removed=tuple(name for name in rows_before if name not in rows_after),
-        added=tuple(name for name in rows_after if name not in rows_before),
+        removed=tuple(name for name in old_rows if name not in new_rows),
+        added=tuple(name for name in new_rows if name not in old_rows),
     )
 
 
@@ -108,7 +106,6 @@ class CubeDiff:
 
     names: tuple[str, str]
     cubes: tuple[Cube, Cube]
-    lights: tuple[str, ...]
     nodes: Changes
     """Nodes of the lattice of the first cube, then those of the second if it has
     another lattice.
@@ -125,7 +122,7 @@ class CubeDiff:
         return tuple(changes for changes in sets if len(changes.rgb))
 
     @property
-    def lacking(self) -> tuple[tuple[str, str, int], ...]:
+    def lacking(self) -> list[dict[str, Any]]:
         """Colours without an answer: their set, the cubes that lack them, and their
         number.
         """
@@ -135,23 +132,22 @@ class CubeDiff:
             counts = np.bincount(changes.lacking, minlength=4).tolist()
             for code in (1, 2, 3):
                 if counts[code]:
-                    lacking.append((changes.name, cubes[code], counts[code]))
-        return tuple(lacking)
+                    row = {"cubes": cubes[code], "colours": counts[code]}
+                    lacking.append({"set": changes.set, **row})
+        return lacking
 
     @property
     def largest(self) -> float:
         """Largest ΔE00 of all colours under all lights."""
-        return float(np.max([row.compared.max(initial=0.0) for row in self.sets]))
+        return max(changes.largest for changes in self.sets)
 
     def is_within(self, tolerance: float) -> bool:
         """Whether both cubes have the same entries and colours, and none differs by
         more than ΔE00 ``tolerance``.
         """
-        has_same_colours = not any(
-            np.isin(changes.lacking, (1, 2)).any() for changes in self.sets
-        )
-        has_same_entries = not (self.pairs.removed or self.pairs.added)
-        return has_same_colours and has_same_entries and self.largest <= tolerance
+        lacks = [np.isin(changes.lacking, (1, 2)).any() for changes in self.sets]
+        is_same = not (any(lacks) or self.pairs.removed or self.pairs.added)
+        return is_same and self.largest <= tolerance
 
 
 def diff_cubes(
@@ -169,7 +165,6 @@ def diff_cubes(
     sensor = common_sensor(cube.data for cube in cubes.values())
     first, second = cubes.values()
     under = find_lights(lights, sensor.observer, sensor.range)
-
     size = sum(cube.data.lattice.size for cube in cubes.values())
     check_memory(
         size * NODE_BYTES,
@@ -178,44 +173,48 @@ def diff_cubes(
         "use cubes of a smaller dim",
     )
     nodes, others = (cube.data.lattice.points for cube in (first, second))
-    nodes = nodes if np.array_equal(nodes, others) else np.concatenate([nodes, others])
-    colours = {
-        NODES: nodes,
-        **{name: rgb.reshape(-1, 3) for name, rgb in (images or {}).items()},
-    }
-
-    def difference(rgb: Array) -> Array:
-        answers = [
-            cube.reflectance(rgb, sensor.wavelengths) for cube in (first, second)
-        ]
-        return delta_e_under(under, *answers)
-
-    changes = []
-    for name, rgb in colours.items():
-        delta_e = np.full((len(rgb), len(under)), np.nan)
-        lacking = np.where(first.covers(rgb), 0, 1) + np.where(second.covers(rgb), 0, 2)
-        delta_e[lacking == 0] = blockwise(difference, rgb[lacking == 0], len(under))
-        changes.append(Changes(name, rgb, delta_e, lacking))
-
+    if not np.array_equal(nodes, others):
+        nodes = np.concatenate([nodes, others])
+    compare = partial(_compare_answers, first, second, under)
     pairs = pair_entries(first.data, second.data)
     first_name, second_name = cubes
     return CubeDiff(
         names=(first_name, second_name),
         cubes=(first, second),
-        lights=tuple(sensor.name for sensor in under),
-        nodes=changes[0],
+        nodes=compare("nodes", nodes),
         pairs=pairs,
         entries=Changes(
-            ENTRIES,
-            pairs.rgb,
+            tuple(light.name for light in under),
             delta_e_under(under, *pairs.spectra),
+            "entries",
+            pairs.rgb,
             np.zeros(len(pairs.names), np.int64),
+            pairs.names,
         ),
-        images=tuple(changes[1:]),
+        images=tuple(
+            compare(name, rgb.reshape(-1, 3)) for name, rgb in (images or {}).items()
+        ),
     )
 
 
-def to_json(diff: CubeDiff, tolerance: float | None, worst: int) -> dict[str, object]:
+def _compare_answers(
+    first: Cube, second: Cube, lights: Sequence[Light], name: str, rgb: Array
+) -> Changes:
+    """Compare the answers of two cubes to a set of colours (n, 3), by blocks."""
+
+    def difference(rgb: Array) -> Array:
+        at = first.wavelengths
+        answers = [cube.reflectance(rgb, at) for cube in (first, second)]
+        return delta_e_under(lights, *answers)
+
+    delta_e = np.full((len(rgb), len(lights)), np.nan)
+    lacking = np.where(first.covers(rgb), 0, 1) + np.where(second.covers(rgb), 0, 2)
+    delta_e[lacking == 0] = blockwise(difference, rgb[lacking == 0], len(lights))
+    names = tuple(light.name for light in lights)
+    return Changes(names, delta_e, name, rgb, lacking)
+
+
+def to_json(diff: CubeDiff, tolerance: float | None, worst: int) -> dict[str, Any]:
     """Return the figures of a comparison, with the worst colours of each set, for JSON.
 
     Rows without a difference come last.
@@ -223,50 +222,19 @@ def to_json(diff: CubeDiff, tolerance: float | None, worst: int) -> dict[str, ob
     differences = list[dict[str, Any]]()
     worst_colours = list[dict[str, Any]]()
     for changes in diff.sets:
-        differences += _differences(changes, diff.lights, tolerance)
-        names = diff.pairs.names if changes is diff.entries else None
-        for row in changes.worst(worst):
-            worst_colours.append(_colour(changes, row, diff.lights, names))
+        for row in changes.rows(tolerance):
+            differences.append({"set": changes.set, **row})
+        worst_colours += map(changes.describe, changes.worst_rows(worst).tolist())
+    verdict = {}
+    if tolerance is not None:
+        verdict = {"tolerance": tolerance, "passed": diff.is_within(tolerance)}
     return {
         "cubes": list(diff.names),
         "largest": diff.largest,
-        **(
-            {}
-            if tolerance is None
-            else {"tolerance": tolerance, "passed": diff.is_within(tolerance)}
-        ),
+        **verdict,
         "differences": sorted(differences, key=lambda row: row["max"] < INVISIBLE),
         "worst": worst_colours,
         "entries_removed": list(diff.pairs.removed),
         "entries_added": list(diff.pairs.added),
-        "lacking": [
-            {"set": name, "cubes": cubes, "colours": count}
-            for name, cubes, count in diff.lacking
-        ],
-    }
-
-
-def _differences(
-    changes: Changes, lights: tuple[str, ...], tolerance: float | None
-) -> list[dict[str, Any]]:
-    """ΔE00 of a set of colours under each light."""
-    rows = []
-    for name, delta_e in zip(lights, changes.compared.T, strict=True):
-        if delta_e.size:
-            row = {"set": changes.name, "light": name, **mean_p95_max(delta_e)}
-            if tolerance is not None:
-                row["moved"] = int((delta_e > tolerance).sum())
-            rows.append(row)
-    return rows
-
-
-def _colour(
-    changes: Changes, row: int, lights: tuple[str, ...], names: tuple[str, ...] | None
-) -> dict[str, Any]:
-    return {
-        "set": changes.name,
-        **({} if names is None else {"entry": names[row]}),
-        "rgb": changes.rgb[row].tolist(),
-        "light": lights[changes.delta_e[row].argmax()],
-        "delta_e": float(changes.largest[row]),
+        "lacking": diff.lacking,
     }

@@ -3,15 +3,14 @@ the spectra that differ most.
 """
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 
 import numpy as np
 from markupsafe import Markup
-from numpy.typing import NDArray
 
 from uplift.common.arrays import Array
 from uplift.extras.colour.srgb import hex_codes, to_display_codes
-from uplift.extras.images.exr import blue_slices
+from uplift.extras.images.slices import blue_slices
 from uplift.extras.pages.figure import RAMP, to_page_svg
 from uplift.extras.pages.html import render
 from uplift.extras.pages.marks import error_map, picture
@@ -33,78 +32,64 @@ def render_diff(diff: CubeDiff, images: Mapping[str, Array], worst: int) -> str:
     """Render a comparison, with the images (height, width, 3) in linear RGB that it was
     made for.
     """
-    worst_of = diff.nodes.compared.max(axis=1)
+    answered = diff.nodes.answered.max(axis=1)
     limit = MIN_LIMIT
-    if worst_of.size:
-        limit = max(limit, math.ceil(np.quantile(worst_of, SHARE)))
+    if answered.size:
+        limit = max(limit, math.ceil(np.quantile(answered, SHARE)))
     dim = diff.cubes[0].data.lattice.dim
-    nodes = blue_slices(diff.nodes.largest[: dim**3], dim)
+    nodes = mosaic(blue_slices(diff.nodes.worst[: dim**3], dim))
+    label = "ΔE00 over the lattice, a tile for each blue"
+    maps = {
+        f"Nodes of {diff.names[0]}: red rises to the right, green upwards, blue from "
+        "tile to tile": _draw([Panel([error_map(nodes, limit)])], label)
+    }
+    sensor = diff.cubes[0].data.sensor
+    for changes in diff.images:
+        rgb = images[changes.set]
+        codes = to_display_codes(rgb, sensor).astype(np.uint8)
+        delta_e = changes.worst.reshape(rgb.shape[:2])
+        panels = [
+            Panel([picture(codes, interpolation="antialiased")]),
+            Panel([error_map(delta_e, limit)]),
+        ]
+        maps[changes.set] = _draw(panels, f"{changes.set}, and ΔE00 of its pixels")
+    spectra = list[dict[str, object]]()
+    for changes in diff.sets:
+        for row in changes.worst_rows(worst).tolist():
+            spectra.append(_spectra(diff, changes, row))
     return render(
         "extras/report/templates/diff.html.j2",
         title=" and ".join(diff.names),
         lead="Where the answers of two cubes differ: ΔE00 between their spectra, the "
         "largest under any of the lights.",
-        diff=diff,
+        names=diff.names,
         figures=to_json(diff, None, worst),
         limit=limit,
         ramp=RAMP,
-        lattice=_map(
-            mosaic(nodes), limit, "ΔE00 over the lattice, a tile for each blue"
-        ),
-        images=[
-            _image(diff, changes, images[changes.name], limit)
-            for changes in diff.images
-        ],
-        spectra=list(_worst_spectra(diff, worst)),
+        maps=maps,
+        spectra=spectra,
     )
 
 
-def _worst_spectra(diff: CubeDiff, count: int) -> Iterator[dict[str, object]]:
-    for changes in diff.sets:
-        for row in changes.worst(count):
-            yield _spectra(diff, changes, int(row))
-
-
-def _map(
-    values: Array, limit: float, label: str, codes: NDArray[np.uint8] | None = None
-) -> Markup:
-    """Draw a map of ΔE00 (height, width), next to a picture of 8-bit codes if one is
-    given.
-    """
-    panels = [Panel([error_map(values, limit)])]
-    if codes is not None:
-        panels.insert(0, Panel([picture(codes, interpolation="antialiased")]))
+def _draw(panels: list[Panel], label: str) -> Markup:
+    """Draw maps of ΔE00, and pictures, side by side."""
     figure = draw(panels, len(panels), WIDTH / len(panels), scale=None)
     return to_page_svg(figure, label)
-
-
-def _image(
-    diff: CubeDiff, changes: Changes, rgb: Array, limit: float
-) -> tuple[str, Markup]:
-    codes = to_display_codes(rgb, diff.cubes[0].data.sensor).astype(np.uint8)
-    values = changes.largest.reshape(rgb.shape[:2])
-    return changes.name, _map(
-        values, limit, f"{changes.name}, and ΔE00 of its pixels", codes
-    )
 
 
 def _spectra(diff: CubeDiff, changes: Changes, row: int) -> dict[str, object]:
     """The two spectra of a colour, or of an entry."""
     sensor = diff.cubes[0].data.sensor
     rgb = changes.rgb[row]
-    wavelengths = sensor.wavelengths
+    at = sensor.wavelengths
     if changes is diff.entries:
-        name = diff.pairs.names[row]
-        answers = [spectra[row] for spectra in diff.pairs.spectra]
+        first, second = (spectra[row] for spectra in diff.pairs.spectra)
     else:
-        name = ""
-        answers = [cube.reflectance(rgb, wavelengths) for cube in diff.cubes]
+        first, second = (cube.reflectance(rgb, at) for cube in diff.cubes)
     (code,) = hex_codes(rgb[None], sensor)
-    return {
-        "title": name or code,
-        "set": changes.name,
+    figures = changes.describe(row)
+    return figures | {
+        "title": figures.get("entry", code),
         "code": code,
-        "light": diff.lights[int(changes.delta_e[row].argmax())],
-        "delta_e": float(changes.largest[row]),
-        "chart": spectra_chart(wavelengths, answers[0], answers[1], None),
+        "chart": spectra_chart(at, first, second, None),
     }

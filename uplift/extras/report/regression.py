@@ -9,13 +9,13 @@ from typing import Literal
 import numpy as np
 
 from uplift.colorimetry.object_colours import solid
-from uplift.colorimetry.observer import light
-from uplift.common.arrays import Array, Mask
+from uplift.colorimetry.observer import lights
+from uplift.common.arrays import Mask
 from uplift.common.errors import CubeFileError
 from uplift.cube.data import CubeData
 from uplift.extras.colour.light_sets import REGRESSION_LIGHTS
+from uplift.extras.report.comparison import compare_spectra
 from uplift.extras.report.diff import pair_entries
-from uplift.extras.report.measures import delta_e_under
 from uplift.lattice.point_table import Status
 from uplift.models.model import reflectance
 
@@ -90,39 +90,32 @@ def compare_rebuilt(
     )
     pairs = pair_entries(stored, rebuilt)
     wavelengths = stored.sensor.wavelengths
-
-    def spectra_of(data: CubeData, entries: Array) -> Array:
+    spectra = []
+    for data, entries in zip((stored, rebuilt), pairs.spectra, strict=True):
         coefficients = data.points.coefficients[compared]
         nodes = reflectance(data.model, coefficients, wavelengths)
-        return np.concatenate([nodes, entries])
-
-    first = spectra_of(stored, pairs.spectra[0])
-    second = spectra_of(rebuilt, pairs.spectra[1])
-    difference = np.abs(first - second)
-    lights = [
-        light(name, stored.sensor.observer, *stored.sensor.range)
-        for name in REGRESSION_LIGHTS
-    ]
-    delta_e = delta_e_under(lights, first, second)
+        spectra.append(np.concatenate([nodes, entries]))
+    setting = stored.sensor.observer, stored.sensor.range
+    before, after = spectra
+    found = compare_spectra(after, before, lights(REGRESSION_LIGHTS, *setting))
     rgb = np.abs(stored.points.rgb.astype(float) - rebuilt.points.rgb)[compared]
-    mean_square = (difference**2).sum() / max(difference.size, 1)
     measures = {
         "rgb": float(rgb.max(initial=0)),
-        "spectra_max": float(difference.max(initial=0)),
-        "spectra_rms": float(np.sqrt(mean_square)),
+        "spectra_max": float(found.deviation.max(initial=0)),
+        "spectra_rms": float(np.sqrt(((before - after) ** 2).mean())),
     }
-    largest = delta_e.max(axis=0, initial=0).tolist()
-    for name, value in zip(REGRESSION_LIGHTS, largest, strict=True):
+    largest = found.delta_e.max(axis=0, initial=0).tolist()
+    for name, value in zip(found.lights, largest, strict=True):
         measures[f"delta_e_{name}"] = value
-    moved = delta_e[np.count_nonzero(compared) :].max(axis=1)
+    moved = found.worst[np.count_nonzero(compared) :]
     # Cubes of earlier versions have the names of entries outside their RGB space only.
     old = stored.provenance.get("left_out", ())
     new = rebuilt.provenance.get("left_out", ())
-    removed = [
+    changes = [
         EntryChange(name, "removed") for name in pairs.removed if name not in new
     ]
-    added = [EntryChange(name, "added") for name in pairs.added if name not in old]
-    changes = [
+    changes += [EntryChange(name, "added") for name in pairs.added if name not in old]
+    changes += [
         EntryChange(pairs.names[row], "moved", float(moved[row]))
         for row in np.flatnonzero(moved > MOVED)
     ]
@@ -131,7 +124,7 @@ def compare_rebuilt(
         measures,
         _counts(stored, compared),
         _counts(rebuilt, compared),
-        (*removed, *added, *changes),
+        tuple(changes),
     )
 
 

@@ -19,7 +19,6 @@ SMALL = SearchGrid(
     dims=(5, 8),
     axes=("srgb",),
     samples=(3, 5, 7),
-    others=False,
     reference=12,
     predicting=60,
     confirming=90,

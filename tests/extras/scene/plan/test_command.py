@@ -25,7 +25,7 @@ def here(home, kitchen, planned, monkeypatch):
     def plan(scene, grid, progress):
         return dataclasses.replace(planned[0], scene=scene)
 
-    monkeypatch.setattr("uplift.extras.scene.plan.plan", plan)
+    monkeypatch.setattr("uplift.extras.scene.plan.planning.plan", plan)
     return home
 
 
@@ -57,7 +57,7 @@ def test_a_plan_is_printed_written_and_built(run, here):
 def test_a_plan_outside_the_folder_of_its_scene_is_refused_before_the_search(
     run, here, monkeypatch
 ):
-    monkeypatch.setattr("uplift.extras.scene.plan.plan", None)
+    monkeypatch.setattr("uplift.extras.scene.plan.planning.plan", None)
     (here / "empty").mkdir()
     error = run("plan", "kitchen.toml", "-o", "empty/a.plan.json", code=2).stderr
     assert (

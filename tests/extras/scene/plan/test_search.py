@@ -11,18 +11,15 @@ import pytest
 
 from tests.extras.scene.plan.conftest import SMALL
 from uplift.extras.scene import plan
-from uplift.extras.scene.plan.candidates import (
-    Candidate,
-    Cost,
-    Pixel,
+from uplift.extras.scene.plan.candidates import Candidate, Cost, Pixel
+from uplift.extras.scene.plan.evaluation import ErrorSummary, GroupError
+from uplift.extras.scene.plan.files import Minimised
+from uplift.extras.scene.plan.search import (
     explore,
     pareto_front,
     positions,
     sufficient,
 )
-from uplift.extras.scene.plan.evaluation import ErrorSummary, GroupError
-from uplift.extras.scene.plan.files import Minimised
-from uplift.extras.scene.plan.space import CandidateSpace
 from uplift.pipeline.options import Options
 
 PIXELS = (Pixel("spectrum", "half"), Pixel("rgb", mode="moments"))
@@ -122,12 +119,12 @@ def test_the_front_has_what_nothing_dominates():
 
 
 @pytest.mark.filterwarnings("ignore::uplift.UpliftWarning")
-def test_bounds_of_a_real_scene_exclude_no_cheaper_candidate(kitchen, planned):
+def test_bounds_of_a_real_scene_exclude_no_cheaper_candidate(
+    kitchen, planned, monkeypatch
+):
     scene = plan.read_scene_file(kitchen)
-    space = CandidateSpace(scene, SMALL, lambda progress: None)
-    everything = explore(
-        [replace(each, bound=0.0) for each in space.candidates()], space.measure, 0.0
-    )
+    monkeypatch.setattr("uplift.extras.scene.plan.space.MARGIN", 0.0)
+    everything = plan.plan(scene, SMALL).measured
     found, _ = planned
     assert len(found.measured) <= len(everything) <= found.considered
     for tolerance, minimise in product((2.5, 4.0, 6.0), MINIMISE):

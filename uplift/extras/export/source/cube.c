@@ -672,6 +672,19 @@ UP_FUNCTION void up_answer(
 }
 
 #else
-UP_ALIASES
+
+/* Where all nodes have their own colours, a colour is found by its place, and its answer is the mixture. */
+UP_FUNCTION int up_find(UP_READS UP_IN float rgb[3], UP_OUT float place[UP_PLACE])
+{
+    return up_locate(UP_TABLE rgb, place);
+}
+
+UP_FUNCTION void up_answer(
+    UP_READS UP_OUT float place[UP_PLACE], int entry, UP_IN float wavelengths[UP_WIDTH],
+    UP_OUT float total[UP_WIDTH])
+{
+    up_blend(UP_TABLE place, entry, wavelengths, total);
+}
+
 #endif
 

@@ -1,27 +1,18 @@
-"""Candidates of a plan, what they cost (bytes, operations per pixel and light, samples
-per ray), and the search.
+"""Candidates of a plan, and what they cost: bytes, operations per pixel and light,
+samples per ray.
 """
 
-from collections import defaultdict
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, field
-from itertools import compress
 from math import prod
-from operator import attrgetter
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from uplift.common.arrays import Array
 from uplift.common.errors import UpliftError
-from uplift.extras import texture
-from uplift.extras.scene.plan.evaluation import (
-    UNMEASURED,
-    ErrorSummary,
-    Rendering,
-    dominated,
-)
-from uplift.extras.scene.plan.files import CostName, Minimised
+from uplift.extras.scene.plan.evaluation import UNMEASURED, ErrorSummary, Rendering
+from uplift.extras.scene.plan.files import Minimised
 from uplift.lattice.lattice import AXES
 from uplift.lookup.cube import Cube
 from uplift.lookup.interpolate import refined_multipliers
@@ -41,11 +32,10 @@ MODELS: Mapping[str, tuple[int, ...]] = {
 class SearchGrid:
     """Candidates, in ascending order, and sizes of the pixel samples.
 
-    ``models`` are numbers of coefficients of moments by warp. ``samples`` are numbers
-    of wavelengths, which other representations are compared with if ``others``. The
-    reference has the last number of coefficients without a warp, and ``reference``
-    nodes along each axis. Candidates are chosen by ``predicting`` pixels and verified
-    on ``confirming`` ones.
+    ``models`` are numbers of coefficients of moments by warp, and ``samples`` numbers
+    of wavelengths. The reference has the last number of coefficients without a warp,
+    and ``reference`` nodes along each axis. Candidates are chosen by ``predicting``
+    pixels and verified on ``confirming`` ones.
     """
 
     models: Mapping[str, tuple[int, ...]] = field(default_factory=lambda: MODELS)
@@ -55,29 +45,18 @@ class SearchGrid:
     reference: int = 96
     predicting: int = 1500
     confirming: int = 4000
-    others: bool = True
 
 
 QUICK = SearchGrid(
-    {"none": (5, 9, 13, 17)},
-    (8, 16, 32, 48),
-    AXES[:1],
-    (3, 5, 6, 7, 8, 10),
-    64,
-    400,
-    1000,
-    others=False,
+    models={"none": (5, 9, 13, 17)},
+    dims=(8, 16, 32, 48),
+    axes=AXES[:1],
+    samples=(3, 5, 6, 7, 8, 10),
+    reference=64,
+    predicting=400,
+    confirming=1000,
 )
 """Fewer candidates and pixels: seconds."""
-
-DEPTHS: dict[str, np.dtype[Any]] = {
-    "half": np.dtype(np.float16),
-    "float": np.dtype(np.float32),
-}
-RGB = "rgb"
-"""Form of pixels without a pixel encoding: colours."""
-INDEX = "index"
-"""The other form: numbers of a list of spectra."""
 
 
 class Cost(NamedTuple):
@@ -101,10 +80,21 @@ class Cost(NamedTuple):
         return balance if minimise == "balance" else getattr(self, minimise), balance
 
 
+DEPTHS: dict[str, np.dtype[Any]] = {
+    "half": np.dtype(np.float16),
+    "float": np.dtype(np.float32),
+}
+SPECTRUM, MOMENTS, MULTIPLIERS = "spectrum", "moments", "multipliers"
+"""Forms of pixels of textures: representations of `uplift.extras.texture`."""
+RGB = "rgb"
+"""Form of pixels that stay as they are."""
+INDEX = "index"
+"""Form of pixels that are numbers of a list of spectra."""
+
+
 @dataclass(frozen=True)
 class Pixel:
-    """What a texture stores per pixel: a pixel encoding, RGB, or an index; and a
-    renderer does with it.
+    """What a texture stores per pixel, and a renderer does with it.
 
     ``depth`` is "half" or "float", empty for the numbers of the image itself, and
     ``mode`` the lookup in the cube that RGB need: "spectra" or "moments", as programs
@@ -126,7 +116,7 @@ class Pixel:
         """Bytes of a pixel of a texture for a cube of ``count`` coefficients, 0 for the
         numbers of the image itself.
         """
-        numbers = samples if self.form == texture.Spectrum.name else count
+        numbers = samples if self.form == SPECTRUM else count
         return numbers * DEPTHS[self.depth].itemsize if self.depth else 0
 
     def operations(self, cube: Options, samples: int) -> int:
@@ -140,13 +130,12 @@ class Pixel:
         is_sigmoid = cube.model == Sigmoid.name
         evaluation = samples * (10 if is_sigmoid else 4 * count + 15)
         conversion = 0 if is_sigmoid else 28 * count**2
-        return {
-            texture.Spectrum.name: 0,
-            texture.Moments.name: conversion + evaluation,
-            texture.Multipliers.name: evaluation,
-            "spectra": 8 * evaluation + 16 * samples,
-            "moments": 16 * count + conversion + evaluation,
-        }[self.mode or self.form]
+        if self.mode == "spectra":
+            return 8 * evaluation + 16 * samples
+        if self.mode == "moments":
+            return 16 * count + conversion + evaluation
+        stored = {MOMENTS: conversion + evaluation, MULTIPLIERS: evaluation}
+        return stored.get(self.form, 0)
 
     def decoded(self, cube: Cube, rgb: Array, nm: Array) -> Array:
         """Reflectances (n, W) at wavelengths (W,) in nm that a renderer reads for
@@ -155,28 +144,29 @@ class Pixel:
         NaN where no spectrum has the rounded moments.
         """
         kind = DEPTHS[self.depth or "float"]
-        if self.mode or self.form in (texture.Spectrum.name, INDEX):
-            reflectances = cube.reflectance(rgb, nm, self.mode or "spectra")
-            return reflectances.astype(kind).astype(float)
-        if self.form == texture.Multipliers.name:
+        model = cube.data.model
+        if self.form == MULTIPLIERS:
             values = refined_multipliers(cube.data, rgb).astype(kind)
-            return evaluate(cube.data.model, values.astype(float), nm)
-        try:
-            values = cube.coefficients(rgb).astype(kind)
-            return reflectance(cube.data.model, values.astype(float), nm)
-        except UpliftError:
-            return np.full((len(rgb), len(nm)), np.nan)
+            return evaluate(model, values.astype(float), nm)
+        if self.form == MOMENTS:
+            try:
+                values = cube.coefficients(rgb).astype(kind)
+                return reflectance(model, values.astype(float), nm)
+            except UpliftError:
+                return np.full((len(rgb), len(nm)), np.nan)
+        reflectances = cube.reflectance(rgb, nm, self.mode or "spectra")
+        return reflectances.astype(kind).astype(float)
 
 
-def _pixels() -> Iterator[Pixel]:
-    for name, form in texture.PIXEL_ENCODINGS.items():
-        for depth in form().depths:
-            yield Pixel(name, depth)
-    for mode in ("spectra", "moments"):
-        yield Pixel(RGB, mode=mode)
-
-
-PIXELS = tuple(_pixels())
+PIXELS = (
+    Pixel(SPECTRUM, "half"),
+    Pixel(SPECTRUM, "float"),
+    Pixel(MOMENTS, "float"),
+    Pixel(MOMENTS, "half"),
+    Pixel(MULTIPLIERS, "float"),
+    Pixel(RGB, mode="spectra"),
+    Pixel(RGB, mode="moments"),
+)
 """Pixels that need a cube."""
 
 
@@ -217,96 +207,3 @@ class Candidate:
     def name(self) -> str:
         """Short text."""
         return "; ".join(filter(None, (self.cube_name, self.traced, self.pixel.name)))
-
-
-Measure = Callable[[Options | None, Sequence[Candidate]], list[Candidate]]
-"""Builds the cube that candidates share, and measures their errors."""
-
-
-def explore(
-    candidates: Iterable[Candidate], measure: Measure, floor: float
-) -> list[Candidate]:
-    """Measure the candidates that may be on the Pareto front, by branch and bound,
-    cubes of few bytes first.
-
-    Candidates that share a cube are measured together, as they cost one build. One is
-    left out if a measured one dominates it: no cost is larger, and its error is at most
-    the lower bound of the other's. Errors below the ``floor`` count as equal. If every
-    bound holds, none that is left out costs less than the cheapest measured one of its
-    error.
-    """
-    groups: dict[Options | None, list[Candidate]] = defaultdict(list)
-    for candidate in candidates:
-        groups[candidate.cube].append(candidate)
-    measured = list[Candidate]()
-    best = np.empty((0, 4))
-
-    def smallest(cube: Options | None) -> float:
-        return min(candidate.cost.memory for candidate in groups[cube])
-
-    for cube in sorted(groups, key=smallest):
-        group = groups[cube]
-        rows = np.array(
-            [(*candidate.cost, max(candidate.bound, floor)) for candidate in group]
-        )
-        promising = list(compress(group, ~dominated(rows, best)))
-        if promising:
-            measured += measure(cube, promising)
-            best = positions(pareto_front(measured), floor)
-    return measured
-
-
-def front(rows: Array) -> list[int]:
-    """Numbers of the rows (m, k) that no other dominates, smallest rows first; of equal
-    rows the first.
-    """
-    kept = list[int]()
-    # what dominates a row comes before it
-    for row in np.lexsort(rows.T[::-1]).tolist():
-        if not dominated(rows[[row]], rows[kept])[0]:
-            kept.append(row)
-    return kept
-
-
-def positions(measured: Sequence[Candidate], floor: float = 0.0) -> Array:
-    """Costs and errors (m, 4) of candidates."""
-    rows = [
-        (*candidate.cost, max(candidate.error.quantile, floor))
-        for candidate in measured
-    ]
-    return np.array(rows).reshape(-1, 4)
-
-
-def pareto_front(measured: Sequence[Candidate]) -> list[Candidate]:
-    """Candidates that no other dominates in cost and error, by ascending error; one of
-    equal ones.
-    """
-    rows = front(positions(measured))
-    return sorted(map(measured.__getitem__, rows), key=attrgetter("error.quantile"))
-
-
-def cheapest_first(
-    measured: Iterable[Candidate], minimise: Minimised
-) -> list[Candidate]:
-    """Candidates by cost, then by error."""
-    return sorted(
-        sorted(measured, key=attrgetter("error.quantile")),
-        key=lambda candidate: candidate.cost.ranked(minimise),
-    )
-
-
-def sufficient(
-    measured: Iterable[Candidate],
-    tolerance: float,
-    minimise: Minimised,
-    limits: Mapping[CostName, float],
-) -> list[Candidate]:
-    """Candidates within the tolerance and the limits of costs, cheapest first."""
-
-    def is_sufficient(candidate: Candidate) -> bool:
-        if not candidate.error.quantile <= tolerance:
-            return False
-        cost = candidate.cost
-        return all(getattr(cost, key) <= limit for key, limit in limits.items())
-
-    return cheapest_first(filter(is_sufficient, measured), minimise)

@@ -2,27 +2,16 @@
 wavelengths, of RGB times light.
 """
 
-import contextlib
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import partial
 
 import numpy as np
 
 from uplift.colorimetry.delta_e import delta_e_2000, delta_e_2000_weights, lab_jacobian
-from uplift.colorimetry.observer import DEFAULT_OBSERVER, illuminant_spd
-from uplift.common.arrays import Array, Indices, Mask
-from uplift.common.errors import OptionError
+from uplift.common.arrays import Array, Indices
 from uplift.common.progress import Progress, ProgressCallback
-from uplift.extras.papers.representations import samples
-from uplift.extras.papers.representations.registry import all_representations
-from uplift.extras.papers.representations.samples import Representation
 from uplift.extras.papers.wavelengths.choice import choose
-from uplift.extras.papers.wavelengths.sampling import (
-    RenderSetup,
-    Sampling,
-    interp_curves,
-)
+from uplift.extras.papers.wavelengths.sampling import RenderSetup, Sampling
 from uplift.lookup.cube import Cube
 
 WORST_DELTA_E = 100.0
@@ -37,10 +26,6 @@ SAMPLE_OPERATIONS = 7
 """Operations for a product of light and surface at one wavelength, and its share in the
 sum to XYZ.
 """
-MAX_MEYER = 12
-"""Meyer's wavelengths that are tried; more take long."""
-FAMILIES = ("PS", "PF", "RS", "RE", "CS", "GQ", "LM")
-"""Representations that are tried: no models, which cubes have, and none with noise."""
 
 
 @dataclass(frozen=True)
@@ -72,50 +57,38 @@ class ErrorSummary:
         """Quantile of the worst part, ΔE00."""
         return self.worst.quantile
 
+    @property
+    def quantiles(self) -> Array:
+        """Quantiles of all parts."""
+        return np.array([part.quantile for part in self.parts])
+
 
 UNMEASURED = ErrorSummary(())
 
 
 @dataclass(frozen=True, eq=False)
 class Rendering:
-    """Numbers that a renderer traces in place of a spectrum, and the ``error`` of the
-    spectra of the reference.
-
-    ``samples`` of a ray, ``operations`` of a product of light and surface with its
-    share in the sum to XYZ, numbers of a ``surface``, and ``xyz``, from reflectances
-    (n, W) at ``wavelengths`` (W,) in nm to XYZ (K, n, 3) under the lights. ``sampling``
-    is None for representations that are not wavelengths.
+    """Wavelengths that a renderer traces in place of a spectrum, and the ``error`` of
+    the spectra of the reference.
     """
 
-    name: str
-    samples: float
-    operations: float
-    surface: float
-    wavelengths: Array
-    xyz: Callable[[Array], Array]
-    sampling: Sampling | None = None
+    sampling: Sampling
     error: ErrorSummary = UNMEASURED
 
-    @classmethod
-    def of_sampling(cls, name: str, sampling: Sampling) -> "Rendering":
-        """Return the rendering with the wavelengths of a sampling, rounded to `DIGITS`
-        and all distinct.
-        """
-        count = len(sampling)
-        steps = np.arange(count) / 10**DIGITS
-        rounded_nm = np.round(sampling.wavelengths, DIGITS)
-        distinct = np.maximum.accumulate(rounded_nm - steps) + steps
-        nm = np.round(distinct, DIGITS)
-        rounded = replace(sampling, wavelengths=nm)
-        return cls(
-            f"{count} {name}",
-            count,
-            SAMPLE_OPERATIONS * count,
-            count,
-            nm,
-            rounded.xyz,
-            rounded,
-        )
+    @property
+    def name(self) -> str:
+        """Short text."""
+        return f"{self.samples} wavelengths"
+
+    @property
+    def samples(self) -> int:
+        """Numbers of a ray, and of a surface."""
+        return len(self.sampling)
+
+    @property
+    def operations(self) -> int:
+        """Operations of all products of light and surface, and of the sum to XYZ."""
+        return SAMPLE_OPERATIONS * self.samples
 
 
 @dataclass(frozen=True, eq=False)
@@ -192,95 +165,34 @@ class EvaluationSet:
         )
 
 
-def renderings(
+def fit_renderings(
     counts: Sequence[int],
     tests: EvaluationSet,
     floor: float,
     progress: ProgressCallback,
-    others: str | None,
 ) -> list[Rendering]:
     """Fit wavelengths, of ``counts`` in ascending order, up to an error of ``floor``;
-    all of them if none reaches it.
-
-    Those that do not lower the error are left out. Meyer's wavelengths and other
-    representations follow for an observer of that name, ``others``, unless another
-    rendering costs no more and is as accurate.
+    all of them if none reaches it. Those that do not lower the error are left out.
     """
-
-    def measured(rendering: Rendering) -> Rendering:
-        nm = rendering.wavelengths
-        xyz = rendering.xyz(tests.reference.reflectance(tests.rgb, nm))
-        return replace(rendering, error=tests.error(xyz))
-
-    def numbers(rendering: Rendering) -> tuple[float, ...]:
-        costs = rendering.samples, rendering.operations, rendering.surface
-        return *costs, max(rendering.error.quantile, floor)
-
     setup = tests.setup.only(tests.subsample(FEW))
-    full = Sampling(setup.wavelengths, setup.cmfs, setup.lights, setup.powers)
+    everything = Sampling(setup.wavelengths, setup.cmfs, setup.lights, setup.powers)
     kept = list[Rendering]()
     for done, count in enumerate((*counts, None)):
         progress(Progress("wavelengths", done, len(counts)))
-        sampling = full if count is None else choose(setup, count=count).sampling
-        rendering = measured(Rendering.of_sampling("wavelengths", sampling))
-        if not kept or rendering.error.quantile < kept[-1].error.quantile:
-            kept.append(rendering)
+        chosen = everything if count is None else choose(setup, count=count).sampling
+        sampling = _rounded(chosen)
+        spectra = tests.reference.reflectance(tests.rgb, sampling.wavelengths)
+        error = tests.error(sampling.xyz(spectra))
+        if not kept or error.quantile < kept[-1].error.quantile:
+            kept.append(Rendering(sampling, error))
         if kept[-1].error.quantile <= floor:
             break
-    for other in _others(setup, tests, others) if others else ():
-        if other.samples < kept[-1].samples:
-            rendering = measured(other)
-            rows = np.array([*map(numbers, kept), numbers(rendering)])
-            if not dominated(rows[-1:], rows[:-1])[0]:
-                kept.append(rendering)
     return kept
 
 
-def dominated(rows: Array, by: Array) -> Mask:
-    """Rows (m, k) for which a row of ``by`` (f, k) is nowhere larger."""
-    return np.asarray((by[:, None] <= rows).all(axis=2).any(axis=0))
-
-
-def _others(
-    setup: RenderSetup, tests: EvaluationSet, observer_name: str
-) -> Iterator[Rendering]:
-    """Meyer's wavelengths, and representations, which are defined for one observer."""
-    for count in range(4, MAX_MEYER + 1):
-        with contextlib.suppress(OptionError):  # no rule of this order
-            sampling = choose(setup, count=count, method="meyer").sampling
-            yield Rendering.of_sampling("wavelengths of Meyer", sampling)
-    if observer_name != DEFAULT_OBSERVER:
-        return
-    powers = np.stack(
-        [illuminant_spd(light, step=samples.STEP) for light in setup.illuminants]
-    )
-    powers /= powers @ samples.xyz_weights()[:, 1:2]
-    surfaces = interp_curves(
-        samples.wavelengths(), setup.wavelengths, setup.reflectances
-    )
-    for representation in all_representations(powers, surfaces):
-        if representation.name[:2] in FAMILIES:
-            light, surface = representation.numbers(powers, surfaces)
-            xyz = partial(_represented_xyz, representation, powers, tests)
-            yield Rendering(
-                representation.name,
-                light,
-                surface + 6 * light,
-                surface,
-                samples.wavelengths(),
-                xyz,
-            )
-
-
-def _represented_xyz(
-    representation: Representation,
-    powers: Array,
-    tests: EvaluationSet,
-    reflectances: Array,
-) -> Array:
-    """XYZ (K, n, 3) of dense reflectances (n, 401): those of the 5 nm table, and what
-    the representation changes.
-    """
-    represented = representation.reflected(powers, reflectances)
-    exact = (powers[:, None] * reflectances) @ samples.xyz_weights()
-    return tests.xyz(reflectances[:, :: samples.TABLE_STRIDE]) + represented - exact
+def _rounded(sampling: Sampling) -> Sampling:
+    """Round wavelengths to `DIGITS`, all distinct."""
+    steps = np.arange(len(sampling)) / 10**DIGITS
+    rounded = np.round(sampling.wavelengths, DIGITS)
+    distinct = np.maximum.accumulate(rounded - steps) + steps
+    return replace(sampling, wavelengths=np.round(distinct, DIGITS))

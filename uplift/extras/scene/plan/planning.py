@@ -13,19 +13,28 @@ from uplift.common.arrays import Array
 from uplift.common.errors import PlanFileError
 from uplift.common.progress import Progress, ProgressCallback, ignore_progress
 from uplift.extras.pages.format import format_error, format_size
-from uplift.extras.scene.plan.candidates import (
-    INDEX,
-    Candidate,
-    Cost,
-    SearchGrid,
+from uplift.extras.scene.plan.candidates import INDEX, Candidate, Cost, SearchGrid
+from uplift.extras.scene.plan.evaluation import ErrorSummary, fit_renderings
+from uplift.extras.scene.plan.files import SceneFile
+from uplift.extras.scene.plan.passes_advice import PassesAdvice, advise_passes
+from uplift.extras.scene.plan.search import (
     explore,
+    over_limits,
     pareto_front,
     sufficient,
 )
-from uplift.extras.scene.plan.evaluation import ErrorSummary
-from uplift.extras.scene.plan.files import SceneFile
-from uplift.extras.scene.plan.passes_advice import PassesAdvice, advise_passes
-from uplift.extras.scene.plan.space import CandidateSpace
+from uplift.extras.scene.plan.space import (
+    CEILING,
+    FLOOR,
+    measure_changes,
+    reference_options,
+    with_cubes,
+    without_cubes,
+)
+from uplift.extras.scene.plan.trial import Builder, SceneContents, Trial
+from uplift.extras.texture.scene_colours import PixelSample
+from uplift.lookup.cube import Cube
+from uplift.pipeline.options import Options
 
 FINALISTS = 6
 """Candidates that are confirmed, at most."""
@@ -135,90 +144,116 @@ def plan(
     AtlasError, TextureError
         If a file cannot be read.
     """
-    space = CandidateSpace(scene, grid or SearchGrid(), progress)
-    measured = explore(space.candidates(), space.measure, space.floor)
+    grid = grid or SearchGrid()
+    contents = SceneContents.read(scene, (grid.predicting, grid.confirming), progress)
+    colours = contents.colours
+    reference = reference_options(scene, grid)
+    progress(Progress("reference cube", 0, 1))
+    builder = Builder(contents.atlas)
+    trial = Trial.of(contents, colours.predicting, builder, reference)
+    tests = trial.tests
+    matrices = tests.matrices()
+    without_spectra = tests.error(tests.rgb @ matrices.mT)
+    floor = FLOOR * scene.tolerance
+    renderings = fit_renderings(grid.samples, tests, floor, progress)
+    candidates = list(without_cubes(colours, renderings))
+    # Cubes save nothing where RGB have no error, or colours are few.
+    if colours.few is None and without_spectra.quantile > floor:
+        changes = measure_changes(trial, reference, grid, floor, progress)
+        candidates += with_cubes(trial, scene, colours, renderings, changes)
+    promising = [each for each in candidates if each.bound <= CEILING * scene.tolerance]
+
+    def measure(options: Options | None, group: Sequence[Candidate]) -> list[Candidate]:
+        progress(Progress(group[0].name, 0, 1))
+        return trial.measure(options, group, matrices)
+
+    measured = explore(promising, measure, floor)
     finalists = sufficient(measured, scene.tolerance, scene.minimise, scene.limits)
     if not finalists:
         raise no_candidate(scene, measured)
-    chosen, confirmed = _confirm(space, finalists)
-    textures = space.colours.predicting
-    few = space.colours.few
-    errors = (
-        space.tests.reference.standard_error(textures.rgb, light)
-        for light in scene.lights
-    )
-    spectra = None
-    if chosen.pixel.form == INDEX and chosen.rendering is not None and few is not None:
-        listed = space.cube(few, space.reference)
-        spectra = (few, listed.reflectance(few, chosen.rendering.wavelengths))
+    progress(Progress("confirmation", 0, 1))
+    other = Trial.of(contents, colours.confirming, builder, reference)
+    chosen, confirmed = _confirm(other, finalists, matrices, scene.tolerance)
     return Plan(
         scene=scene,
         measured=tuple(measured),
-        considered=space.considered,
+        considered=len(candidates),
         chosen=chosen,
         confirmed=confirmed,
-        matrices=space.matrices,
-        without_spectra=space.without_spectra,
-        spectra=spectra,
-        expected_error=max(
-            (float(error @ textures.share) for error in errors if error is not None),
-            default=None,
-        ),
-        passes=_advise_passes(space, chosen),
+        matrices=matrices,
+        without_spectra=without_spectra,
+        spectra=_list_spectra(chosen, colours.few, builder, reference),
+        expected_error=_expected_error(scene, tests.reference, colours.predicting),
+        passes=_advise_passes(scene, chosen, tests.setup.reflectances),
     )
 
 
-def _advise_passes(space: CandidateSpace, chosen: Candidate) -> PassesAdvice | None:
-    """Return the passes that an RGB renderer would need in place of the choice."""
-    if chosen.rendering is None or space.sensor.observer != DEFAULT_OBSERVER:
+def _list_spectra(
+    chosen: Candidate, few: Array | None, builder: Builder, reference: Options
+) -> tuple[Array, Array] | None:
+    """Return colours (n, 3) and their reflectances, if the choice is a list."""
+    if chosen.pixel.form != INDEX or chosen.rendering is None or few is None:
         return None
-    scene = space.scene
-    spectra = space.tests.setup.reflectances
+    nm = chosen.rendering.sampling.wavelengths
+    return few, builder.cube(few, reference).reflectance(few, nm)
+
+
+def _expected_error(
+    scene: SceneFile, reference: Cube, textures: PixelSample
+) -> float | None:
+    """Return the mean standard error of textures under the worst light, if the cube has
+    standard errors.
+    """
+    errors = [reference.standard_error(textures.rgb, light) for light in scene.lights]
+    means = [float(error @ textures.share) for error in errors if error is not None]
+    return max(means, default=None)
+
+
+def _advise_passes(
+    scene: SceneFile, chosen: Candidate, spectra: Array
+) -> PassesAdvice | None:
+    """Return the passes that an RGB renderer would need in place of the choice."""
+    if chosen.rendering is None or scene.sensor().observer != DEFAULT_OBSERVER:
+        return None
     return advise_passes(spectra, scene.lights, scene.tolerance, scene.quantile)
 
 
 def _confirm(
-    space: CandidateSpace, finalists: Sequence[Candidate]
+    trial: Trial, finalists: Sequence[Candidate], matrices: Array, tolerance: float
 ) -> tuple[Candidate, ErrorSummary]:
     """The first finalist within the tolerance on other pixels, or else the one of the
     smallest error there.
     """
-    space.progress(Progress("confirmation", 0, 1))
-    tests = space.evaluation_set(space.colours.confirming)
     tried = list[tuple[Candidate, ErrorSummary]]()
     limit = np.inf
     for finalist in finalists:
         if finalist.error.quantile > limit:
             continue
         limit = CLEARLY_SMALLER * finalist.error.quantile
-        options = finalist.cube
-        cube = space.cube(tests.rgb, options) if options else tests.reference
-        (measured,) = space.errors(cube, [finalist], tests)
+        [measured] = trial.measure(finalist.cube, [finalist], matrices)
         tried.append((finalist, measured.error))
-        if measured.error.quantile <= space.scene.tolerance or len(tried) == FINALISTS:
+        if measured.error.quantile <= tolerance or len(tried) == FINALISTS:
             break
     # Only the last one can be within the tolerance, and then has the smallest error.
     return min(tried, key=lambda pair: pair[1].quantile)
 
 
 def no_candidate(scene: SceneFile, measured: Sequence[Candidate]) -> PlanFileError:
-    """The error if no candidate is within the tolerance, or within the
-    limits as well.
+    """The error if no candidate is within the tolerance, or within the limits as
+    well.
     """
     enough = sufficient(measured, scene.tolerance, scene.minimise, {})
     if enough:
         cost = enough[0].cost
-        allowance = cost._replace(**scene.limits)
-        over = [
-            key for key, limit in scene.limits.items() if getattr(cost, key) > limit
-        ]
-        needs = " and ".join(cost_text(cost, key) for key in over)
-        allowed = " and ".join(cost_text(allowance, key) for key in over)
+        over = over_limits(enough[0], scene.limits)[0]
+        needed, allowed = (
+            cost_text(costs, over) for costs in (cost, cost._replace(**scene.limits))
+        )
         problem = (
-            f"the cheapest within {scene.tolerance:g} needs {needs}; limits allow "
+            f"the cheapest within {scene.tolerance:g} needs {needed}; limits allow "
             f"{allowed}"
         )
-        hint = f"raise limits.{over[0]} or the tolerance"
+        hint = f"raise limits.{over} or the tolerance"
     else:
         best = min(measured, key=attrgetter("error.quantile")).error.worst
         problem = (
@@ -234,8 +269,6 @@ def no_candidate(scene: SceneFile, measured: Sequence[Candidate]) -> PlanFileErr
 def cost_text(cost: Cost, key: str) -> str:
     """A cost with its unit."""
     value = getattr(cost, key)
-    return (
-        format_size(value)
-        if key == "memory"
-        else f"{value:,.0f} {'operations' if key == 'time' else key}"
-    )
+    if key == "memory":
+        return format_size(value)
+    return f"{value:,.0f} {'operations' if key == 'time' else key}"

@@ -9,13 +9,13 @@ static void uplift_choose(uplift_cube *cube)
     const uplift_content *content = &cube->content;
     const int is_sparse = uplift_has(content, UPLIFT_SPARSE);
     int k = 0;
-    while (UPLIFT_CAST(unsigned, kernels[k].count) < content->count || kernels[k].is_sigmoid != content->is_sigmoid
+    while (kernels[k].count < content->model.count || kernels[k].is_sigmoid != content->model.is_sigmoid
         || kernels[k].is_warped != cube->is_warped || kernels[k].is_inexact < cube->is_inexact
         || kernels[k].is_sparse < is_sparse) k += 1;
     cube->kernel = kernels[k].functions;
     cube->tag = kernels[k].count;
     cube->stride = kernels[k].count / 4 * 4 + 4;
-    cube->entry_count = content->is_sigmoid ? 3 : UPLIFT_MOST_COUNT;
+    cube->entry_count = content->model.is_sigmoid ? 3 : UPLIFT_MOST_COUNT;
 }
 
 /* Read the file of a cube unless an error came before. Return the cube, or release it and return NULL. */
@@ -24,6 +24,7 @@ static uplift_cube *uplift_read(uplift_cube *cube, int result, int *error)
     if (result == UPLIFT_OK) result = uplift_read_header(&cube->content);
     if (result == UPLIFT_OK) result = uplift_read_metadata(&cube->content);
     if (result == UPLIFT_OK) result = uplift_check_digest(&cube->content);
+    if (result == UPLIFT_OK) result = uplift_find_arrays(&cube->content);
     if (result == UPLIFT_OK) result = uplift_check(cube);
     if (result == UPLIFT_OK) result = uplift_set_range(cube) ? UPLIFT_OK : UPLIFT_INVALID;
     if (result == UPLIFT_OK) uplift_choose(cube);
@@ -141,15 +142,15 @@ static int uplift_expected_error(const uplift_cube *cube, const float rgb[3], do
     uplift_place place;
     double sum = 0;
     *error = 0;
-    if (!cube->standard_error) return UPLIFT_NO_ERRORS;
+    if (!cube->content.known[UPLIFT_STANDARD_ERROR]) return UPLIFT_NO_ERRORS;
     if (!uplift_find(cube, rgb, &place)) return UPLIFT_NOT_IN_SCENE;
     for (int corner = 0; corner < 8; ++corner)
         sum += UPLIFT_CAST(double, place.weights[corner])
-            * uplift_number_at(cube->standard_error, UPLIFT_CAST(size_t, place.rows[corner]));
+            * uplift_value(cube, UPLIFT_STANDARD_ERROR, place.rows[corner]);
     sum *= factor;
     if (place.entry >= 0) {
         double weight = UPLIFT_CAST(double, place.lattice_weight);
-        double entry_error = uplift_number_at(cube->atlas_error, UPLIFT_CAST(size_t, place.entry));
+        double entry_error = uplift_value(cube, UPLIFT_ATLAS_ERROR, place.entry);
         if (place.entry >= cube->content.entries - cube->content.looks) entry_error *= factor;
         sum = weight * sum + (1 - weight) * entry_error;
     }
@@ -169,47 +170,40 @@ int uplift_error_bound(const uplift_cube *cube, const float rgb[3], float *error
 
 int uplift_coefficient_count(const uplift_cube *cube)
 {
-    return UPLIFT_CAST(int, cube->content.count);
+    return UPLIFT_CAST(int, cube->content.model.count);
 }
 
-/* Whether a node has not its own colour; absent ones count as if they had. */
-static int uplift_misses(const uplift_cube *cube, const int position[3])
-{
-    int row;
-    for (int k = 0; k < 3; ++k)
-        if (position[k] < 0 || position[k] >= cube->dim) return 0;
-    row = uplift_row(cube, (position[0] * cube->dim + position[1]) * cube->dim + position[2]);
-    return row < cube->present && uplift_number_at(cube->distance, UPLIFT_CAST(size_t, row)) > cube->content.threshold;
-}
-
-/* Whether coefficients of a colour would have to be moved: a corner of its cell shares a cell with such a node. */
+/* Whether coefficients of a colour would have to be moved: a corner of its cell shares a cell with a node that has not its
+   own colour. Absent ones count as if they had. */
 static int uplift_is_moved(const uplift_cube *cube, const uplift_place *place)
 {
     for (int corner = 0; corner < 8 * cube->is_inexact; ++corner)
         for (int step = 0; step < 27 && place->weights[corner] > 0; ++step) {
-            const int position[3] = {
-                place->position[0] + corner / 4 + step / 9 - 1, place->position[1] + corner / 2 % 2 + step / 3 % 3 - 1,
-                place->position[2] + corner % 2 + step % 3 - 1};
-            if (uplift_misses(cube, position)) return 1;
+            const int red = place->position[0] + corner / 4 + step / 9 - 1;
+            const int green = place->position[1] + corner / 2 % 2 + step / 3 % 3 - 1;
+            const int blue = place->position[2] + corner % 2 + step % 3 - 1, last = cube->dim - 1;
+            int row;
+            if (red < 0 || red > last || green < 0 || green > last || blue < 0 || blue > last) continue;
+            row = uplift_row(cube, (red * cube->dim + green) * cube->dim + blue);
+            if (row < cube->present && uplift_misses(cube, row)) return 1;
         }
     return 0;
 }
 
 int uplift_coefficients(const uplift_cube *cube, const float rgb[3], float *coefficients)
 {
-    const size_t count = UPLIFT_CAST(size_t, cube->content.count);
+    const long long count = cube->content.model.count;
     uplift_place place;
     int result = UPLIFT_OK;
     if (!uplift_find(cube, rgb, &place)) result = UPLIFT_NOT_IN_SCENE;
     else if (uplift_is_moved(cube, &place)) result = UPLIFT_NO_COEFFICIENTS;
-    for (size_t k = 0; k < count; ++k) {
+    for (int k = 0; k < count; ++k) {
         double sum = 0, weight = UPLIFT_CAST(double, place.lattice_weight);
         for (int corner = 0; corner < 8 && result == UPLIFT_OK; ++corner)
             sum += UPLIFT_CAST(double, place.weights[corner])
-                * uplift_number_at(cube->coefficients, UPLIFT_CAST(size_t, place.rows[corner]) * count + k);
+                * uplift_value(cube, UPLIFT_COEFFICIENTS, place.rows[corner] * count + k);
         if (place.entry >= 0 && result == UPLIFT_OK)
-            sum = weight * sum
-                + (1 - weight) * uplift_number_at(cube->atlas_coefficients, UPLIFT_CAST(size_t, place.entry) * count + k);
+            sum = weight * sum + (1 - weight) * uplift_value(cube, UPLIFT_ATLAS_COEFFICIENTS, place.entry * count + k);
         coefficients[k] = UPLIFT_CAST(float, sum);
     }
     return result;

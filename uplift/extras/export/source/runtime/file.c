@@ -39,28 +39,17 @@ static void uplift_release(uplift_bytes *file)
 
 static int uplift_acquire(const char *path, uplift_bytes *file)
 {
-    int result = UPLIFT_OK;
-    size_t room = 1 << 16;
+    int result = UPLIFT_NO_FILE;
     FILE *stream = fopen(path, "rb");
-    if (!stream) return UPLIFT_NO_FILE;
-    file->owned = UPLIFT_CAST(unsigned char *, malloc(room));
-    if (!file->owned) result = UPLIFT_NO_MEMORY;
-    while (result == UPLIFT_OK) {
-        unsigned char *larger;
-        size_t got = fread(file->owned + file->size, 1, room - file->size, stream);
-        file->size += got;
-        if (file->size < room) {
-            if (ferror(stream)) result = UPLIFT_NO_FILE;
-            break;
-        }
-        larger = room > UPLIFT_CAST(size_t, -1) / 2
-            ? NULL : UPLIFT_CAST(unsigned char *, realloc(file->owned, 2 * room));
-        if (!larger) result = UPLIFT_NO_MEMORY;
-        else file->owned = larger;
-        room *= 2;
+    long size = stream && fseek(stream, 0, SEEK_END) == 0 ? ftell(stream) : -1;
+    if (size >= 0 && fseek(stream, 0, SEEK_SET) == 0) {
+        file->size = UPLIFT_CAST(size_t, size);
+        file->owned = UPLIFT_CAST(unsigned char *, malloc(file->size + 1));
+        file->bytes = file->owned;
+        if (!file->owned) result = UPLIFT_NO_MEMORY;
+        else if (fread(file->owned, 1, file->size, stream) == file->size) result = UPLIFT_OK;
     }
-    fclose(stream);
-    file->bytes = file->owned;
+    if (stream) fclose(stream);
     return result;
 }
 
@@ -221,7 +210,7 @@ static int uplift_next(uplift_json *json, int *count, char closing)
 {
     if (uplift_take(json, closing)) return 0;
     if (*count > 0) uplift_expect(json, ',');
-    *count += 1;
+    *count += !json->failed;
     return !json->failed;
 }
 
@@ -262,17 +251,12 @@ static double uplift_read_number(uplift_json *json)
 }
 
 /* A whole number from 0 to 2^53. */
-static unsigned long long uplift_read_size(uplift_json *json)
+static long long uplift_read_size(uplift_json *json)
 {
-    unsigned long long value = 0;
-    int digits = 0;
-    uplift_peek(json);
-    for (; json->at < json->end && *json->at >= '0' && *json->at <= '9'; ++json->at, ++digits) {
-        value = value * 10 + UPLIFT_CAST(unsigned long long, *json->at - '0');
-        if (value > 1ULL << 53) uplift_fail(json);
-    }
-    if (digits == 0) uplift_fail(json);
-    return json->failed ? 0 : value;
+    double value = uplift_read_number(json);
+    long long size = value >= 0 && value <= 9007199254740992.0 ? UPLIFT_CAST(long long, value) : -1;
+    if (UPLIFT_CAST(double, size) != value) uplift_fail(json);
+    return json->failed ? 0 : size;
 }
 
 /* Read a value of any type. */
@@ -308,12 +292,44 @@ static void uplift_skip(uplift_json *json, int depth)
     }
 }
 
-/* Read a list and return how many items it has. */
-static int uplift_read_length(uplift_json *json)
+/* The value of a key in a table, or a position that has failed. */
+static uplift_json uplift_member(uplift_json table, const char *key)
 {
     int count = 0;
-    uplift_expect(json, '[');
-    while (uplift_next(json, &count, ']')) uplift_skip(json, UPLIFT_DEPTH);
+    uplift_expect(&table, '{');
+    while (uplift_next(&table, &count, '}')) {
+        if (uplift_is(uplift_read_key(&table), key)) return table;
+        uplift_skip(&table, UPLIFT_DEPTH);
+    }
+    uplift_fail(&table);
+    return table;
+}
+
+/* Values of keys in a table: empty, 0 or no items where there is none of this type. */
+static uplift_string uplift_string_of(uplift_json table, const char *key)
+{
+    uplift_json value = uplift_member(table, key);
+    return uplift_read_string(&value);
+}
+
+static double uplift_number_of(uplift_json table, const char *key)
+{
+    uplift_json value = uplift_member(table, key);
+    return uplift_read_number(&value);
+}
+
+static long long uplift_size_of(uplift_json table, const char *key)
+{
+    uplift_json value = uplift_member(table, key);
+    return uplift_read_size(&value);
+}
+
+static int uplift_length_of(uplift_json table, const char *key)
+{
+    uplift_json list = uplift_member(table, key);
+    int count = 0;
+    uplift_expect(&list, '[');
+    while (uplift_next(&list, &count, ']')) uplift_skip(&list, UPLIFT_DEPTH);
     return count;
 }
 

@@ -62,15 +62,3 @@ ${definitions}
 #else
 #define UP_UNROLL
 #endif
-/* Where all nodes have their own colours, a colour is found by its place, and its answer is the mixture. */
-#define UP_ALIASES \
-    UP_FUNCTION int UP_NAME(find)(UP_READS UP_IN float rgb[3], UP_OUT float place[UP_PLACE]) \
-    { \
-        return UP_NAME(locate)(UP_TABLE rgb, place); \
-    } \
-    UP_FUNCTION void UP_NAME(answer)( \
-        UP_READS UP_OUT float place[UP_PLACE], int entry, UP_IN float wavelengths[UP_WIDTH], \
-        UP_OUT float total[UP_WIDTH]) \
-    { \
-        UP_NAME(blend)(UP_TABLE place, entry, wavelengths, total); \
-    }

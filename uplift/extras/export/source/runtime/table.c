@@ -16,8 +16,19 @@ struct uplift_cube {
     /* A cube of a scene: numbers of nodes that have a row, ascending, their rows, and where the numbers of each line of
        nodes along blue begin. Rows from `present` on belong to nodes that are absent. */
     int *points, *rows, *lines, point_count, present, absent_row;
-    const uplift_array *coefficients, *distance, *standard_error, *atlas_coefficients, *atlas_error;
 };
+
+/* A number of an array that lookups need. */
+static double uplift_value(const uplift_cube *cube, int array, long long index)
+{
+    return uplift_number_at(cube->content.known[array], index);
+}
+
+/* Whether the node in a row has not its own colour. */
+static int uplift_misses(const uplift_cube *cube, int row)
+{
+    return uplift_value(cube, UPLIFT_DISTANCE, row) > cube->content.threshold;
+}
 
 /* Row of a node in the table and in the arrays of the file; that of an absent node has no spectrum. */
 static int uplift_find_row(const uplift_cube *cube, int index)
@@ -94,12 +105,13 @@ static int uplift_try_multipliers(const double *c, int count, double *p)
 }
 
 /* Multipliers of the coefficients in a row of an array, with as little grey as necessary; 0 if no spectrum has them. */
-static int uplift_multipliers(const uplift_cube *cube, const uplift_array *array, size_t row, int count, double *p)
+static int uplift_multipliers(const uplift_cube *cube, const uplift_array *array, int row, double *p)
 {
     static const double greys[] = {0, 1e-10, 1e-8, 1e-6, 1e-4};
+    const int count = UPLIFT_CAST(int, array->shape[1]);
     double given[UPLIFT_MOST_COUNT] = {0}, mixed[UPLIFT_MOST_COUNT];
-    for (int k = 0; k < count; ++k) given[k] = p[k] = uplift_number_at(array, row * UPLIFT_CAST(size_t, count) + UPLIFT_CAST(size_t, k));
-    if (cube->content.is_sigmoid) return 1;
+    for (int k = 0; k < count; ++k) given[k] = p[k] = uplift_number_at(array, row * array->shape[1] + k);
+    if (cube->content.model.is_sigmoid) return 1;
     for (int turn = 0; turn < 5; ++turn) {
         for (int k = 0; k < count; ++k) mixed[k] = (1 - greys[turn]) * given[k];
         mixed[0] += 0.5 * greys[turn];
@@ -108,24 +120,29 @@ static int uplift_multipliers(const uplift_cube *cube, const uplift_array *array
     return 0;
 }
 
-/* Write multipliers in single precision; 0 for numbers with which spectra cannot be evaluated. */
-static int uplift_store(const uplift_cube *cube, const double *p, int count, float *row)
+/* Write the multipliers of a row of an array in single precision, scaled to a sum of at most `most`; 0 for numbers with
+   which spectra cannot be evaluated. */
+static int uplift_store(const uplift_cube *cube, const uplift_array *array, int row, double most, float *stored)
 {
-    double most = cube->content.is_sigmoid ? 1e18 : 1e30;
+    const int count = UPLIFT_CAST(int, array->shape[1]);
+    const double limit = cube->content.model.is_sigmoid ? 1e18 : 1e30;
+    double p[UPLIFT_MOST_COUNT], size = 0;
+    if (!uplift_multipliers(cube, array, row, p)) return 0;
     for (int k = 0; k < count; ++k) {
-        if (!uplift_is_finite(p + k) || fabs(p[k]) > most) return 0;
-        row[k] = UPLIFT_CAST(float, p[k]);
+        if (!uplift_is_finite(p + k) || fabs(p[k]) > limit) return 0;
+        size += fabs(p[k]);
     }
+    for (int k = 0; k < count; ++k) stored[k] = UPLIFT_CAST(float, size > most ? p[k] * (most / size) : p[k]);
     return 1;
 }
 
 /* Index of the last node up to x, at most that before the last. */
-static int uplift_cell(const uplift_array *axis, double x)
+static int uplift_cell(const uplift_cube *cube, double x)
 {
-    int low = 0, high = UPLIFT_CAST(int, axis->length) - 1;
+    int low = 0, high = cube->dim - 1;
     while (high - low > 1) {
         int middle = (low + high) / 2;
-        if (uplift_number_at(axis, UPLIFT_CAST(size_t, middle)) <= x) low = middle;
+        if (uplift_value(cube, UPLIFT_NODES, middle) <= x) low = middle;
         else high = middle;
     }
     return low;
@@ -133,23 +150,42 @@ static int uplift_cell(const uplift_array *axis, double x)
 
 /* Set the lower and the upper face of the box of an entry along an axis. It has no face at the edge of the lattice where
    the entry is there: rounding would decide. */
-static void uplift_set_faces(const uplift_array *axis, double centre, double reach, double faces[2])
+static void uplift_set_faces(const uplift_cube *cube, double centre, double reach, double faces[2])
 {
-    int last = UPLIFT_CAST(int, axis->length) - 1, cell = uplift_cell(axis, centre);
-    double first = uplift_number_at(axis, UPLIFT_CAST(size_t, cell));
-    double next = uplift_number_at(axis, UPLIFT_CAST(size_t, cell) + 1);
+    int last = cube->dim - 1, cell = uplift_cell(cube, centre);
+    double first = uplift_value(cube, UPLIFT_NODES, cell), next = uplift_value(cube, UPLIFT_NODES, cell + 1);
     double position = cell + (centre - first) / (next - first);
     for (int side = 0; side < 2; ++side) {
         double at = position + (side ? reach : -reach);
         int low = at < 0 ? 0 : UPLIFT_CAST(int, at);
         low = low < last ? low : last - 1;
         at = at < 0 ? 0 : at > last ? last : at;
-        first = uplift_number_at(axis, UPLIFT_CAST(size_t, low));
-        next = uplift_number_at(axis, UPLIFT_CAST(size_t, low) + 1);
+        first = uplift_value(cube, UPLIFT_NODES, low);
+        next = uplift_value(cube, UPLIFT_NODES, low + 1);
         faces[side] = first + (at - low) * (next - first);
     }
     if (centre < 1e-6) faces[0] = 2 * centre - faces[1];
     else if (centre > 1 - 1e-6) faces[1] = 2 * centre - faces[0];
+}
+
+/* Write the box of an entry: its centre, what rounding left of it, and reciprocals of the distances to the lower and upper
+   faces. Set the first and last cells that it touches along each axis. */
+static void uplift_make_box(const uplift_cube *cube, int entry, float box[12], int low[3], int high[3])
+{
+    const double reach = uplift_value(cube, UPLIFT_ATLAS_REACH, entry);
+    for (int k = 0; k < 3; ++k) {
+        double centre = uplift_value(cube, UPLIFT_ATLAS_RGB, 3 * entry + k), faces[2];
+        int cell = uplift_cell(cube, centre);
+        uplift_set_faces(cube, centre, reach, faces);
+        low[k] = uplift_cell(cube, faces[0]);
+        high[k] = uplift_cell(cube, faces[1]);
+        low[k] = low[k] > cell - 1 ? low[k] : cell - 1;
+        high[k] = high[k] < cell + 1 ? high[k] : cell + 1;
+        box[k] = UPLIFT_CAST(float, centre);
+        box[3 + k] = UPLIFT_CAST(float, centre - UPLIFT_CAST(double, box[k]));
+        box[6 + k] = UPLIFT_CAST(float, centre > faces[0] ? 1 / (centre - faces[0]) : 0);
+        box[9 + k] = UPLIFT_CAST(float, faces[1] > centre ? 1 / (faces[1] - centre) : 0);
+    }
 }
 
 /* A cell that the box of an entry touches. */
@@ -160,37 +196,18 @@ typedef struct {
 static int uplift_order_touches(const void *one, const void *other)
 {
     const uplift_touch *a = UPLIFT_CAST(const uplift_touch *, one), *b = UPLIFT_CAST(const uplift_touch *, other);
-    return a->cell != b->cell ? (a->cell > b->cell) - (a->cell < b->cell) : (a->entry > b->entry) - (a->entry < b->entry);
+    return a->cell != b->cell ? a->cell - b->cell : a->entry - b->entry;
 }
 
-/* List the cells that boxes touch, by cell and entry, and write the boxes: centres, what rounding left of them, and
-   reciprocals of the distances to the lower and upper faces. Count only, without `touches`. */
-static size_t uplift_list_touches(const uplift_cube *cube, uplift_touch *touches, float *boxes)
+/* List the cells that boxes touch, by cell and entry; count only, without `touches`. */
+static int uplift_list_touches(const uplift_cube *cube, uplift_touch *touches)
 {
-    const uplift_content *content = &cube->content;
-    const uplift_array *axis = uplift_find_array(content, "nodes", UPLIFT_F64, UPLIFT_F64, content->dim, 0, 0, 1);
-    const unsigned long long length = UPLIFT_CAST(unsigned long long, content->entries);
-    const uplift_array *rgb = uplift_find_array(content, "atlas.rgb", UPLIFT_F64, UPLIFT_F64, length, 3, 0, 1);
-    const uplift_array *reaches = uplift_find_array(content, "atlas.reach", UPLIFT_F64, UPLIFT_F64, length, 0, 0, 1);
-    size_t count = 0;
-    for (int entry = 0; entry < content->entries; ++entry) {
-        double reach = uplift_number_at(reaches, UPLIFT_CAST(size_t, entry));
+    int count = 0;
+    for (int entry = 0; entry < cube->content.entries; ++entry) {
         int low[3], high[3];
-        for (int k = 0; k < 3; ++k) {
-            double centre = uplift_number_at(rgb, UPLIFT_CAST(size_t, 3 * entry + k)), faces[2];
-            int cell = uplift_cell(axis, centre);
-            float rounded = UPLIFT_CAST(float, centre), *box = boxes + 12 * entry + k;
-            uplift_set_faces(axis, centre, reach, faces);
-            low[k] = uplift_cell(axis, faces[0]);
-            high[k] = uplift_cell(axis, faces[1]);
-            low[k] = low[k] > cell - 1 ? low[k] : cell - 1;
-            high[k] = high[k] < cell + 1 ? high[k] : cell + 1;
-            box[0] = rounded;
-            box[3] = UPLIFT_CAST(float, centre - UPLIFT_CAST(double, rounded));
-            box[6] = UPLIFT_CAST(float, centre > faces[0] ? 1 / (centre - faces[0]) : 0);
-            box[9] = UPLIFT_CAST(float, faces[1] > centre ? 1 / (faces[1] - centre) : 0);
-        }
-        if (!(reach > 0)) continue;
+        float box[12];
+        if (!(uplift_value(cube, UPLIFT_ATLAS_REACH, entry) > 0)) continue;
+        uplift_make_box(cube, entry, box, low, high);
         for (int red = low[0]; red <= high[0]; ++red)
             for (int green = low[1]; green <= high[1]; ++green)
                 for (int blue = low[2]; blue <= high[2]; ++blue, ++count)
@@ -199,7 +216,7 @@ static size_t uplift_list_touches(const uplift_cube *cube, uplift_touch *touches
                         touches[count].entry = entry;
                     }
     }
-    if (touches) qsort(touches, count, sizeof *touches, uplift_order_touches);
+    if (touches) qsort(touches, UPLIFT_CAST(size_t, count), sizeof *touches, uplift_order_touches);
     return count;
 }
 
@@ -228,57 +245,41 @@ static int uplift_invert(double m[3][3], double inverse[3][3])
     return 1;
 }
 
-static int uplift_read_sensor(const uplift_content *content, uplift_sensor *sensor)
+static int uplift_read_sensor(const uplift_cube *cube, uplift_sensor *sensor)
 {
-    const double most = 1e30;
-    const uplift_array *wavelengths = NULL, *cmfs, *power, *to_rgb, *sensitivities = NULL;
+    const long long samples = cube->content.known[UPLIFT_SENSOR_WAVELENGTHS]->length;
+    const int is_camera = uplift_has(&cube->content, UPLIFT_CAMERA);
     double matrix[3][3], inverse[3][3], sums[3] = {0, 0, 0}, scale = 0;
-    unsigned long long length = 0;
-    int samples;
-    for (int k = 0; k < content->array_count; ++k)
-        if (uplift_is(content->arrays[k].name, "sensor.wavelengths")) length = content->arrays[k].length;
-    if (length < 2) return UPLIFT_INVALID;
-    if (length > UPLIFT_SAMPLE_ROOM) return UPLIFT_UNSUPPORTED;
-    samples = UPLIFT_CAST(int, length);
-    wavelengths = uplift_find_array(content, "sensor.wavelengths", UPLIFT_F64, UPLIFT_F64, length, 0, 300, 1000);
-    cmfs = uplift_find_array(content, "sensor.cmfs", UPLIFT_F64, UPLIFT_F64, length, 3, -most, most);
-    power = uplift_find_array(content, "sensor.power", UPLIFT_F64, UPLIFT_F64, length, 0, 0, most);
-    to_rgb = uplift_find_array(content, "sensor.xyz_to_rgb", UPLIFT_F64, UPLIFT_F64, 3, 3, -most, most);
-    if (uplift_has(content, UPLIFT_CAMERA)) {
-        sensitivities = uplift_find_array(content, "sensor.sensitivities", UPLIFT_F64, UPLIFT_F64, length, 3, 0, most);
-        if (!sensitivities) return UPLIFT_INVALID;
-    }
-    if (!wavelengths || !cmfs || !power || !to_rgb) return UPLIFT_INVALID;
-    sensor->samples = samples;
-    sensor->first = uplift_number_at(wavelengths, 0);
-    sensor->step = uplift_number_at(wavelengths, 1) - sensor->first;
-    if (!(sensor->step > 0)) return UPLIFT_INVALID;
-    if (sensor->first > 380 || uplift_number_at(wavelengths, UPLIFT_CAST(size_t, samples - 1)) < 780) return UPLIFT_INVALID;
-    for (int row = 0; row < 3; ++row)
-        for (int column = 0; column < 3; ++column) matrix[row][column] = uplift_number_at(to_rgb, UPLIFT_CAST(size_t, 3 * row + column));
+    if (samples < 2) return UPLIFT_INVALID;
+    if (samples > UPLIFT_SAMPLE_ROOM) return UPLIFT_UNSUPPORTED;
+    sensor->samples = UPLIFT_CAST(int, samples);
+    sensor->first = uplift_value(cube, UPLIFT_SENSOR_WAVELENGTHS, 0);
+    sensor->step = uplift_value(cube, UPLIFT_SENSOR_WAVELENGTHS, 1) - sensor->first;
+    if (!(sensor->step > 0) || sensor->first > 380) return UPLIFT_INVALID;
+    if (uplift_value(cube, UPLIFT_SENSOR_WAVELENGTHS, samples - 1) < 780) return UPLIFT_INVALID;
+    for (int k = 0; k < 9; ++k) matrix[k / 3][k % 3] = uplift_value(cube, UPLIFT_SENSOR_XYZ_TO_RGB, k);
     if (!uplift_invert(matrix, inverse)) return UPLIFT_INVALID;
     for (int k = 0; k < 3; ++k) sensor->luminance[k] = inverse[1][k];
-    for (int k = 0; k < samples; ++k) {
-        size_t at = UPLIFT_CAST(size_t, k);
-        double even = sensor->first + k * sensor->step;
-        if (!(fabs(uplift_number_at(wavelengths, at) - even) < 1e-6 * sensor->step)) return UPLIFT_UNSUPPORTED;
-        scale += uplift_number_at(power, at) * uplift_number_at(cmfs, 3 * at + 1);
+    for (int k = 0; k < sensor->samples; ++k) {
+        double even = sensor->first + k * sensor->step, power = uplift_value(cube, UPLIFT_SENSOR_POWER, k);
+        if (!(fabs(uplift_value(cube, UPLIFT_SENSOR_WAVELENGTHS, k) - even) < 1e-6 * sensor->step)) return UPLIFT_UNSUPPORTED;
+        scale += power * uplift_value(cube, UPLIFT_SENSOR_CMFS, 3 * k + 1);
         for (int channel = 0; channel < 3; ++channel) {
             double shape = 0;
-            if (sensitivities) shape = uplift_number_at(sensitivities, 3 * at + UPLIFT_CAST(size_t, channel));
+            if (is_camera) shape = uplift_value(cube, UPLIFT_SENSOR_SENSITIVITIES, 3 * k + channel);
             else
                 for (int axis = 0; axis < 3; ++axis)
-                    shape += uplift_number_at(cmfs, 3 * at + UPLIFT_CAST(size_t, axis)) * matrix[channel][axis];
+                    shape += uplift_value(cube, UPLIFT_SENSOR_CMFS, 3 * k + axis) * matrix[channel][axis];
             sensor->shapes[channel][k] = shape;
-            sums[channel] += shape * uplift_number_at(power, at);
+            sums[channel] += shape * power;
         }
     }
     for (int channel = 0; channel < 3; ++channel) {
         double white = 0;
-        for (int k = 0; k < samples; ++k) {
-            double shape = sensor->shapes[channel][k];
-            if (sensitivities) shape = sensor->shapes[channel][k] /= sums[channel];
-            sensor->weights[channel][k] = shape * uplift_number_at(power, UPLIFT_CAST(size_t, k)) / (sensitivities ? 1 : scale);
+        for (int k = 0; k < sensor->samples; ++k) {
+            double shape = sensor->shapes[channel][k], power = uplift_value(cube, UPLIFT_SENSOR_POWER, k);
+            if (is_camera) shape = sensor->shapes[channel][k] /= sums[channel];
+            sensor->weights[channel][k] = shape * power / (is_camera ? 1 : scale);
             white += sensor->weights[channel][k];
         }
         if (!uplift_is_finite(&white) || fabs(white - 1) > 1e-6) return UPLIFT_INVALID;

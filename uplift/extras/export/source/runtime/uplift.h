@@ -24,13 +24,7 @@ static int UP_NAME(place)(const uplift_cube *cube, const float *rgb, float *latt
     return entry;
 }
 
-static void UP_NAME(answer_all)(
-    const uplift_cube *cube, const float *rgb, const float *wavelengths, int count, float *reflectances)
-{
-    UP_NAME(reflectances)(cube, rgb, wavelengths, count, reflectances);
-}
-
-static const uplift_kernel UP_NAME(functions) = {UP_NAME(answer_all), UP_NAME(place)};
+static const uplift_kernel UP_NAME(functions) = {UP_NAME(reflectances), UP_NAME(place)};
 
 #undef UPLIFT_KERNEL
 #undef UP_COUNT
