@@ -127,63 +127,62 @@ def command(
 ) -> None:
     enable_jit_cache()
     from uplift.extras.colour.light_sets import RELIGHT_LIGHTS
+    from uplift.samples import sample_path
 
     if cube_path is not None and files:
         raise click.UsageError(
             "--cube and --atlas are alternatives: give one of the two."
         )
     is_image = Path(output).suffix.lower() == IMAGE
-    paths = _input_paths(images, is_image)
-    check_outputs(output, inputs=paths)
-    atlases = files
-    if not images and cube_path is None:
-        atlases = files or (SAMPLE_ATLAS,)
-    write = _write_image if is_image else _write_pictures
-    lights = lights or RELIGHT_LIGHTS
-    extra, notes = write(paths, cube_path, atlases, lights, output, style, **settings)
-    if extra is not None and files:
-        print_notes(extra, notes, err=style == "json")
-
-
-def _input_paths(images: Sequence[str], is_image: bool) -> list[str]:
-    from uplift.samples import sample_path
-
     paths = expand_patterns(images) or [str(sample_path(SAMPLE))]
     if is_image and len(paths) > 1:
         raise click.UsageError(
             "An .exr file holds one image: relight images one by one."
         )
-    return paths
+    check_outputs(output, inputs=paths)
+    atlases = files
+    if not images and cube_path is None:
+        atlases = files or (SAMPLE_ATLAS,)
+    with progress_bar("computing spectra"):
+        own, notes = _cube_of_user(cube_path, atlases)
+    lights = lights or RELIGHT_LIGHTS
+    if is_image:
+        _write_image(paths[0], own, lights, output, style, **settings)
+    else:
+        stems = [Path(path).stem for path in atlases or [cube_path or ""]]
+        name = f"{SPECTRAL} with {', '.join(stems)}"
+        cubes = {} if own is None else {name: own}
+        _write_pictures(paths, cubes, lights, output, style, **settings)
+    if own is not None and files:
+        print_notes(own, notes, err=style == "json")
 
 
 def _write_image(
-    paths: Sequence[str],
-    cube_path: str | None,
-    atlases: Sequence[str],
+    path: str,
+    own: Cube | None,
     lights: Sequence[Illuminant],
     output: str,
     style: str,
     *,
     adapt: bool | None,
     force: bool,
-    **pixels: Any,
-) -> tuple[Cube | None, list[UpliftWarning]]:
-    """Relight an image at full size, and return the user's cube with its warnings."""
+    **reading: Any,
+) -> None:
+    """Relight an image at full size by the user's cube, if there is one."""
     from uplift.extras import texture
     from uplift.extras.relight.relighter import prepare_relighter
     from uplift.lookup.cube import load
 
     with progress_bar("computing spectra") as progress:
-        extra, notes = _cube_of_user(cube_path, atlases)
         converter = prepare_relighter(
-            extra or load(),
+            own or load(),
             lights,
             adapt=adapt is not False,
             threads=os.cpu_count() or 1,
-            **pixels,
+            **reading,
         )
         conversion = texture.convert(
-            converter, paths[0], output, force=force, progress=progress
+            converter, path, output, force=force, progress=progress
         )
     warn(conversion.warnings)
     shown = json.loads(converter.header["uplift.texture"])["lights"]
@@ -192,37 +191,33 @@ def _write_image(
         print_json({"output": output, "lights": shown, "pixels": count})
     else:
         facts = f"{', '.join(shown)}, {pluralise(count, 'pixel')}"
-        paragraph(f"{output}: {Path(paths[0]).name} under {facts}")
-    return extra, notes
+        paragraph(f"{output}: {Path(path).name} under {facts}")
 
 
 def _write_pictures(
     paths: Sequence[str],
-    cube_path: str | None,
-    atlases: Sequence[str],
+    own: dict[str, Cube],
     lights: Sequence[Illuminant],
     output: str,
     style: str,
     *,
     adapt: bool | None,
     force: bool,
-    **pixels: Any,
-) -> tuple[Cube | None, list[UpliftWarning]]:
-    """Write a figure or page, and return the user's cube with its warnings."""
+    **reading: Any,
+) -> None:
+    """Write a figure or page of pictures by the packaged cube, and by the user's with
+    its name, if there is one. The packaged cube is left out if it has other settings.
+    """
     from uplift.common.files import write_text
     from uplift.extras.relight.relight import relight, relit_page, write_relit_sheet
     from uplift.lookup.cube import load
 
     with progress_bar("computing spectra"):
-        packaged = load()
-        pictures = read_pictures(paths, load(cube_path).data.sensor, **pixels)
-        extra, notes = _cube_of_user(cube_path, atlases)
-        cubes = {}
-        if extra is None or _setting(extra) == _setting(packaged):
-            cubes[SPECTRAL] = packaged
-        if extra is not None:
-            stems = [Path(path).stem for path in atlases or [cube_path or ""]]
-            cubes[f"{SPECTRAL} with {', '.join(stems)}"] = extra
+        cubes = {SPECTRAL: load(), **own}
+        *_, shown = cubes.values()
+        if _setting(shown) != _setting(cubes[SPECTRAL]):
+            cubes = own
+        pictures = read_pictures(paths, shown.data.sensor, **reading)
         relit = [
             relight(
                 Path(path).name,
@@ -240,7 +235,6 @@ def _write_pictures(
         else:
             write_relit_sheet(relit, output, adapt=adapt, force=force)
     _print_differences(relit, output, style)
-    return extra, notes
 
 
 def _setting(cube: Cube) -> tuple[str, str, str]:
