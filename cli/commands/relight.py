@@ -27,6 +27,8 @@ from ..startup import enable_jit_cache
 
 if TYPE_CHECKING:
     from uplift.colorimetry.illuminants import Illuminant
+    from uplift.extras.images.converter import Converter
+    from uplift.extras.images.picture import Picture
     from uplift.extras.relight.relight import Relit
     from uplift.lookup.cube import Cube
 
@@ -123,10 +125,13 @@ def command(
     files: Sequence[str],
     output: str,
     style: str,
-    **settings: Any,
+    adapt: bool | None,
+    force: bool,
+    **reading: Any,
 ) -> None:
     enable_jit_cache()
     from uplift.extras.colour.light_sets import RELIGHT_LIGHTS
+    from uplift.lookup.cube import load
     from uplift.samples import sample_path
 
     if cube_path is not None and files:
@@ -143,47 +148,43 @@ def command(
     atlases = files
     if not images and cube_path is None:
         atlases = files or (SAMPLE_ATLAS,)
+    pictures = []
+    if not is_image:
+        pictures = read_pictures(paths, load(cube_path).data.sensor, **reading)
     with progress_bar("computing spectra"):
         own, notes = _cube_of_user(cube_path, atlases)
     lights = lights or RELIGHT_LIGHTS
     if is_image:
-        _write_image(paths[0], own, lights, output, style, **settings)
+        converter = _relighter(own or load(), lights, adapt=adapt, **reading)
+        _write_image(converter, paths[0], output, style, force=force)
     else:
         stems = [Path(path).stem for path in atlases or [cube_path or ""]]
-        name = f"{SPECTRAL} with {', '.join(stems)}"
-        cubes = {} if own is None else {name: own}
-        _write_pictures(paths, cubes, lights, output, style, **settings)
+        cubes = _shown_cubes(own, f"{SPECTRAL} with {', '.join(stems)}")
+        relit = _relight_all(paths, pictures, cubes, lights)
+        _write_pictures(relit, output, adapt=adapt, force=force)
+        _print_differences(relit, output, style)
     if own is not None and files:
         print_notes(own, notes, err=style == "json")
 
 
-def _write_image(
-    path: str,
-    own: Cube | None,
-    lights: Sequence[Illuminant],
-    output: str,
-    style: str,
-    *,
-    adapt: bool | None,
-    force: bool,
-    **reading: Any,
-) -> None:
-    """Relight an image at full size by the user's cube, if there is one."""
-    from uplift.extras import texture
+def _relighter(
+    cube: Cube, lights: Sequence[Illuminant], *, adapt: bool | None, **reading: Any
+) -> Converter:
     from uplift.extras.relight.relighter import prepare_relighter
-    from uplift.lookup.cube import load
+
+    whitens = adapt is not False
+    cores = os.cpu_count() or 1
+    return prepare_relighter(cube, lights, adapt=whitens, threads=cores, **reading)
+
+
+def _write_image(
+    converter: Converter, path: str, output: str, style: str, *, force: bool
+) -> None:
+    """Relight an image at full size."""
+    from uplift.extras.texture.conversion import convert
 
     with progress_bar("computing spectra") as progress:
-        converter = prepare_relighter(
-            own or load(),
-            lights,
-            adapt=adapt is not False,
-            threads=os.cpu_count() or 1,
-            **reading,
-        )
-        conversion = texture.convert(
-            converter, path, output, force=force, progress=progress
-        )
+        conversion = convert(converter, path, output, force=force, progress=progress)
     warn(conversion.warnings)
     shown = json.loads(converter.header["uplift.texture"])["lights"]
     count = conversion.counts.pixels
@@ -194,31 +195,35 @@ def _write_image(
         paragraph(f"{output}: {Path(path).name} under {facts}")
 
 
-def _write_pictures(
-    paths: Sequence[str],
-    own: dict[str, Cube],
-    lights: Sequence[Illuminant],
-    output: str,
-    style: str,
-    *,
-    adapt: bool | None,
-    force: bool,
-    **reading: Any,
-) -> None:
-    """Write a figure or page of pictures by the packaged cube, and by the user's with
-    its name, if there is one. The packaged cube is left out if it has other settings.
+def _shown_cubes(own: Cube | None, name: str) -> dict[str, Cube]:
+    """Return the packaged cube, and the user's by its name if there is one, which
+    stands alone if it has other settings.
     """
-    from uplift.common.files import write_text
-    from uplift.extras.relight.relight import relight, relit_page, write_relit_sheet
     from uplift.lookup.cube import load
 
+    packaged = load()
+    if own is None:
+        return {SPECTRAL: packaged}
+    is_alike = _setting(own) == _setting(packaged)
+    return {SPECTRAL: packaged, name: own} if is_alike else {name: own}
+
+
+def _setting(cube: Cube) -> tuple[str, str, str]:
+    """Return what cubes that are compared must have in common."""
+    sensor = cube.data.sensor
+    return sensor.space, sensor.illuminant, sensor.observer
+
+
+def _relight_all(
+    paths: Sequence[str],
+    pictures: Sequence[Picture],
+    cubes: dict[str, Cube],
+    lights: Sequence[Illuminant],
+) -> list[Relit]:
+    from uplift.extras.relight.relight import relight
+
     with progress_bar("computing spectra"):
-        cubes = {SPECTRAL: load(), **own}
-        *_, shown = cubes.values()
-        if _setting(shown) != _setting(cubes[SPECTRAL]):
-            cubes = own
-        pictures = read_pictures(paths, shown.data.sensor, **reading)
-        relit = [
+        return [
             relight(
                 Path(path).name,
                 picture.rgb,
@@ -230,17 +235,19 @@ def _write_pictures(
             )
             for path, picture in zip(paths, pictures, strict=True)
         ]
-        if Path(output).suffix.lower() == PAGE:
-            write_text(relit_page(relit, adapt=adapt), output, force=force)
-        else:
-            write_relit_sheet(relit, output, adapt=adapt, force=force)
-    _print_differences(relit, output, style)
 
 
-def _setting(cube: Cube) -> tuple[str, str, str]:
-    """Return what cubes that are compared must have in common."""
-    sensor = cube.data.sensor
-    return sensor.space, sensor.illuminant, sensor.observer
+def _write_pictures(
+    relit: Sequence[Relit], output: str, *, adapt: bool | None, force: bool
+) -> None:
+    """Write a figure or page."""
+    from uplift.common.files import write_text
+    from uplift.extras.relight.relight import relit_page, write_relit_sheet
+
+    if Path(output).suffix.lower() == PAGE:
+        write_text(relit_page(relit, adapt=adapt), output, force=force)
+    else:
+        write_relit_sheet(relit, output, adapt=adapt, force=force)
 
 
 def _print_differences(relit: Sequence[Relit], output: str, style: str) -> None:
