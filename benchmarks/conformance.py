@@ -5,7 +5,7 @@ docs/guides/conformance.md.
 import runpy
 import tempfile
 from collections.abc import Callable, Iterator
-from dataclasses import asdict, replace
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
@@ -134,7 +134,7 @@ def as_row(name: str, result: Conformance) -> Row:
         "lookup": name,
         "light": result.light,
         "mode": result.mode,
-        **asdict(result.differences),
+        **result.differences._asdict(),
         "verdict": "passed" if result.passed else "failed",
         "explanation": result.explanation,
     }
