@@ -19,7 +19,7 @@ from .answers import (
     print_spectrum,
     without_rounding,
 )
-from .console import has_colours, print_csv, print_csv_text, print_lines, say
+from .console import EscapedOutput, emit, has_colours, print_csv, say
 from .table import print_json_rows
 
 if TYPE_CHECKING:
@@ -136,7 +136,8 @@ def _print_csv(answers: Answers, blocks: Iterable[QueryBlock]) -> None:
     for light in known:
         names += [f"standard_error_{light}", f"error_bound_{light}"]
     names += [f"hex_{light}" for light in lights]
-    print_csv([*names, "entry", *map("{:g}".format, wavelengths)], [])
+    print_csv([[*names, "entry", *map("{:g}".format, wavelengths)]])
+    output = EscapedOutput()
     for block in blocks:
         spectra = number_rows(without_rounding(block.reflectance))
         for row, spectrum in zip(answer_rows(answers, block), spectra, strict=True):
@@ -147,7 +148,7 @@ def _print_csv(answers: Answers, blocks: Iterable[QueryBlock]) -> None:
                 cells += [values.get(light) for values in errors]
             cells += [lit["hex"] for lit in row["lights"].values()]
             text = csv_text([*cells, row["entry"]], [])
-            print_csv_text(f"{text[:-1]},{spectrum}\n")
+            output.write(f"{text[:-1]},{spectrum}\n")
 
 
 def _print_lines(answers: Answers, blocks: Iterable[QueryBlock]) -> None:
@@ -164,7 +165,8 @@ def _print_lines(answers: Answers, blocks: Iterable[QueryBlock]) -> None:
                 f"{indent}hex      {'linear RGB':<17}  {'ΔE00':<7}  {middle}  atlas "
                 "entry"
             )
-        print_lines(_lines(cube, block, rows, names))
+        for line in _lines(cube, block, rows, names):
+            emit(line)
 
 
 def _lines(
