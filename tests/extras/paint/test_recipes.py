@@ -1,6 +1,5 @@
 """Recipes: known ones are found again, and no grid of parts has a better one."""
 
-
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
