@@ -15,7 +15,7 @@ from .. import options
 from ..output.answers import format_rgb, hex_codes, patch
 from ..output.console import print_fields, say
 from ..output.query import answer_rows
-from ..output.table import Format, Table, print_json_rows
+from ..output.table import Table, print_json_rows
 from ..outputs import check_outputs
 from ..queries import Answers, colour_options
 
@@ -276,7 +276,7 @@ def _print_table(cube: Cube, rows: Iterable[Row], texts: Sequence[str]) -> None:
         "b": "b* range",
         "share": "share",
     }
-    formats: dict[str, Format] = {
+    formats: dict[str, Any] = {
         "lab": ".1f",
         "a": "{0[0]}..{0[1]}".format,
         "b": "{0[0]}..{0[1]}".format,

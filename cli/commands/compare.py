@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from functools import partial
 from operator import itemgetter
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -16,7 +16,7 @@ from .. import options
 from ..inputs import DEFAULT_ATLASES, atlas_files, read_atlases
 from ..output.console import say
 from ..output.progress import progress_bar
-from ..output.table import Format, Table, print_result
+from ..output.table import Table, print_result
 from ..outputs import check_folder, write_files
 from ..startup import use_one_blas_thread
 
@@ -227,7 +227,7 @@ def _print_table(comparison: Comparison, tuned: list[Row], *, every: bool) -> No
         "light_floats": "of a light",
         "ns": "product",
     }
-    formats: dict[str, Format] = {"floats": ".1f", "light_floats": ".1f"}
+    formats: dict[str, Any] = {"floats": ".1f", "light_floats": ".1f"}
     formats["ns"] = format_time
     tables = []
     for name, title in comparison.sets.items():

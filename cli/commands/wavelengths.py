@@ -154,7 +154,7 @@ def _choose(
 
 def _result(choice: Choice, sensor: Sensor, materials: Sequence[str]) -> dict[str, Any]:
     """Return a choice as JSON values; its errors are those of ``materials``."""
-    from uplift.extras.papers.wavelengths.sampling import statistics
+    from uplift.extras.report.comparison import mean_p95_max
 
     sampling = choice.sampling
     by_light = dict(zip(sampling.lights, choice.errors, strict=True))
@@ -163,7 +163,7 @@ def _result(choice: Choice, sensor: Sensor, materials: Sequence[str]) -> dict[st
     errors = {}
     for light, delta_e in by_light.items():
         worst = materials[delta_e.argmax() % len(materials)]
-        errors[light] = {**statistics(delta_e), "worst": worst}
+        errors[light] = {**mean_p95_max(delta_e), "worst": worst}
     return {
         "method": choice.method,
         "count": len(sampling),

@@ -20,11 +20,7 @@ from uplift.colorimetry import observer
 from uplift.colorimetry.sensor import Light, Sensor, in_unit_cube
 from uplift.common.arrays import Array, Indices
 from uplift.extras.colour.light_sets import HELD_OUT_LIGHTS
-from uplift.extras.report.comparison import (
-    delta_e_under,
-    mean_p95_max,
-    rms_difference,
-)
+from uplift.extras.report.comparison import compare_spectra, mean_p95_max
 from uplift.extras.report.measures import check_calibration
 from uplift.fit.families import shipped_library
 
@@ -102,9 +98,7 @@ class Errors:
         """Compare the errors under a light, by its number, with the stated ones."""
         if self.stated is None:
             return {}
-        stated = self.stated[:, number].T
-        calibration = check_calibration(self.delta_e[:, number], *stated)
-        return {} if calibration is None else calibration.to_json()
+        return check_calibration(self.delta_e[:, number], self.stated[:, number])
 
     def rows(self, lights: Iterable[str], **labels: Any) -> Iterator[Row]:
         """Yield a row of the ΔE00 under each light, of all lights, and of the rms."""
@@ -125,8 +119,8 @@ def spectrum_errors(
     predicted: Array, measured: Array, lights: Sequence[Light]
 ) -> Errors:
     """Compare predicted with measured reflectances (n, N)."""
-    delta_e = delta_e_under(lights, predicted, measured)
-    return Errors(delta_e, rms_difference(predicted, measured))
+    found = compare_spectra(measured, predicted, lights)
+    return Errors(found.delta_e, found.rms)
 
 
 def join(parts: Sequence[Errors]) -> Errors:

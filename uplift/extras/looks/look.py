@@ -13,9 +13,7 @@ from uplift.extras.colour.srgb import is_number, parse_colour
 
 MAX_TARGET = 2.0
 """Limit of the linear sRGB of a target: brighter colours are typing errors."""
-TABLE = "look"
 EXAMPLE = "write [[look]] tables such as rgb = '#8a2a20' and FL11 = '#70392a'"
-MAX_LOOKS = 10_000
 
 WrittenRgb = str | Sequence[float]
 
@@ -162,23 +160,11 @@ def read_looks(path: StrPath) -> tuple[Look, ...]:
     >>> look.name, look.lights
     ('brick', {'FL11': '#70392a'})
     """
-    from uplift.extras.files.spec import read_toml  # imports pydantic
+    from uplift.extras.files.spec import read_spec  # imports pydantic
+    from uplift.extras.looks.looks_file import LooksFile
 
-    file = read_toml(path, LookError)
-    tables = file.values.get(TABLE, [])
-    is_list = isinstance(tables, list) and {*map(type, tables)} <= {dict}
-    if set(file.values) != {TABLE} or not is_list or not 0 < len(tables) <= MAX_LOOKS:
-        file.fail(
-            (),
-            f"must have 1 to {MAX_LOOKS} [[look]] tables and no other keys",
-            hint=EXAMPLE,
-        )
-    looks = []
-    for number, table in enumerate(tables):
-        if "rgb" not in table:
-            file.fail((TABLE, number, "rgb"), "required key is missing", hint=EXAMPLE)
-        options = {
-            key: table.pop(key) for key in ("rgb", "weight", "name") if key in table
-        }
-        looks.append(Look(lights=table, **options, path=file.path))
-    return tuple(looks)
+    tables = read_spec(path, LooksFile, LookError, hint=EXAMPLE).look
+    return tuple(
+        Look(table.rgb, table.model_extra or {}, table.weight, table.name, path)
+        for table in tables
+    )

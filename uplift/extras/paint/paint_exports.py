@@ -1,6 +1,5 @@
 """The formats that paints are exported in: one function each."""
 
-from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -107,15 +106,3 @@ def export_page(paints: Paints, path: Path, style: str, *, force: bool) -> str:
     """Write a page with the paints as tubes, which mixes them and finds recipes."""
     write_text(page(paints), path, force=force)
     return f"page of {pluralise(len(paints), 'paint')}"
-
-
-PAINT_EXPORTS: dict[str, tuple[str, Callable[..., str]]] = {
-    "c": (".h", export_program),
-    "glsl": (".glsl", export_program),
-    "hlsl": (".hlsl", export_program),
-    "cube": (".cube", export_lut),
-    "html": (".html", export_page),
-}
-"""Suffix and function of each format by name. A function takes the paints, a path, the
-name of the format and ``force``, and returns a line about what it wrote.
-"""

@@ -35,7 +35,6 @@ from uplift.lab.method import (
 )
 from uplift.lab.runner import Prepare, Task
 from uplift.lookup.cube import Cube, load
-from uplift.lookup.interpolate import MODES
 from uplift.models.moments import Moments
 from uplift.pipeline.build import build
 
@@ -210,27 +209,26 @@ class CubeKind:
     @property
     def name(self) -> str:
         """Return the name for the command line."""
-        count = self.coefficients if self.model == Moments.name else ""
-        return f"{self.model}{count}-{self.dim}{'-atlas' if self.atlas else ''}"
+        return f"{self._model('')}-{self.dim}{'-atlas' if self.atlas else ''}"
 
     @property
     def title(self) -> str:
         """Return the name to display."""
-        count = f" {self.coefficients}" if self.model == Moments.name else ""
-        return f"{self.model}{count}, {self.dim}³{', atlas' if self.atlas else ''}"
+        return f"{self._model(' ')}, {self.dim}³{', atlas' if self.atlas else ''}"
 
     @property
     def command(self) -> str:
         """Return the command that builds the cube."""
-        words = ["uplift build"]
-        if self.atlas:
-            words.append("--atlas FILE")
-        words.append(f"--dim {self.dim}")
+        atlas = " --atlas FILE" if self.atlas else ""
+        model = f"--model {self.model}"
         if self.model == Moments.name:
-            words.append(f"--coefficients {self.coefficients}")
-        else:
-            words.append(f"--model {self.model}")
-        return " ".join(words)
+            model = f"--coefficients {self.coefficients}"
+        return f"uplift build{atlas} --dim {self.dim} {model}"
+
+    def _model(self, space: str) -> str:
+        """Return the model, with the number of coefficients if there is a choice."""
+        is_fixed = self.model != Moments.name
+        return self.model if is_fixed else f"{self.model}{space}{self.coefficients}"
 
 
 def in_python(
@@ -294,34 +292,48 @@ def in_c(cube: CubeKind, mode: str) -> Method:
     )
 
 
-LOOKUPS: dict[str, Callable[[CubeKind], Method]] = {
-    **{mode: partial(in_python, mode=mode) for mode in MODES},
-    **{f"{mode}-float32": partial(in_single, mode=mode) for mode in MODES},
-    **{f"c-{mode}": partial(in_c, mode=mode) for mode in MODES},
-    "bulk": in_bulk,
-}
-_BOTH = "spectra spectra-float32 moments moments-float32 refined refined-float32"
-CUBES = {
-    CubeKind("moments", 3, 32, atlas=True): "spectra bulk",
-    CubeKind("moments", 5, 32, atlas=True): "spectra bulk",
-    CubeKind("moments", 9, 8, atlas=True): "spectra moments refined bulk",
-    CubeKind("moments", 9, 16, atlas=True): "spectra moments bulk",
-    CubeKind("moments", 9, 32, atlas=True): f"{_BOTH} bulk c-moments c-spectra",
-    CubeKind("moments", 9, 64, atlas=True): "spectra moments bulk",
-    CubeKind("moments", 13, 32, atlas=True): "spectra bulk",
-    CubeKind("moments", 17, 32, atlas=True): "spectra bulk",
-    CubeKind("moments", 17, 64, atlas=True): "spectra bulk",
-    CubeKind("moments", 9, 8): "spectra moments refined bulk",
-    CubeKind("moments", 9, 16): "spectra moments bulk",
-    CubeKind("moments", 9, 32): f"{_BOTH} bulk c-moments c-spectra",
-    CubeKind("moments", 9, 64): "spectra moments nearest bulk",
-    CubeKind("sigmoid", 3, 32, atlas=True): "spectra",
-    CubeKind("sigmoid", 3, 8): "spectra moments refined",
-    CubeKind("sigmoid", 3, 16): "spectra moments",
-    CubeKind("sigmoid", 3, 32): f"{_BOTH} c-moments c-spectra",
-    CubeKind("sigmoid", 3, 64): "spectra moments c-moments",
+Lookup = Callable[[CubeKind], Method]
+"""Describes a lookup in a cube."""
+SPECTRA = partial(in_python, mode="spectra")
+MOMENTS = partial(in_python, mode="moments")
+REFINED = partial(in_python, mode="refined")
+NEAREST = partial(in_python, mode="nearest")
+C_SPECTRA = partial(in_c, mode="spectra")
+C_MOMENTS = partial(in_c, mode="moments")
+BOTH_PRECISIONS = (
+    SPECTRA,
+    partial(in_single, mode="spectra"),
+    MOMENTS,
+    partial(in_single, mode="moments"),
+    REFINED,
+    partial(in_single, mode="refined"),
+)
+CUBES: dict[CubeKind, tuple[Lookup, ...]] = {
+    CubeKind("moments", 3, 32, atlas=True): (SPECTRA, in_bulk),
+    CubeKind("moments", 5, 32, atlas=True): (SPECTRA, in_bulk),
+    CubeKind("moments", 9, 8, atlas=True): (SPECTRA, MOMENTS, REFINED, in_bulk),
+    CubeKind("moments", 9, 16, atlas=True): (SPECTRA, MOMENTS, in_bulk),
+    CubeKind("moments", 9, 32, atlas=True): (
+        *BOTH_PRECISIONS,
+        in_bulk,
+        C_MOMENTS,
+        C_SPECTRA,
+    ),
+    CubeKind("moments", 9, 64, atlas=True): (SPECTRA, MOMENTS, in_bulk),
+    CubeKind("moments", 13, 32, atlas=True): (SPECTRA, in_bulk),
+    CubeKind("moments", 17, 32, atlas=True): (SPECTRA, in_bulk),
+    CubeKind("moments", 17, 64, atlas=True): (SPECTRA, in_bulk),
+    CubeKind("moments", 9, 8): (SPECTRA, MOMENTS, REFINED, in_bulk),
+    CubeKind("moments", 9, 16): (SPECTRA, MOMENTS, in_bulk),
+    CubeKind("moments", 9, 32): (*BOTH_PRECISIONS, in_bulk, C_MOMENTS, C_SPECTRA),
+    CubeKind("moments", 9, 64): (SPECTRA, MOMENTS, NEAREST, in_bulk),
+    CubeKind("sigmoid", 3, 32, atlas=True): (SPECTRA,),
+    CubeKind("sigmoid", 3, 8): (SPECTRA, MOMENTS, REFINED),
+    CubeKind("sigmoid", 3, 16): (SPECTRA, MOMENTS),
+    CubeKind("sigmoid", 3, 32): (*BOTH_PRECISIONS, C_MOMENTS, C_SPECTRA),
+    CubeKind("sigmoid", 3, 64): (SPECTRA, MOMENTS, C_MOMENTS),
 }
 """Cubes and their lookups."""
 METHODS: list[Method] = []
 for _cube, _lookups in CUBES.items():
-    METHODS += [LOOKUPS[name](_cube) for name in _lookups.split()]
+    METHODS += [describe(_cube) for describe in _lookups]

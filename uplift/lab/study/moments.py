@@ -22,7 +22,7 @@ from uplift.common.errors import AtlasError, OptionError
 from uplift.common.progress import ProgressCallback, ignore_progress, reported
 from uplift.extras.colour.light_sets import REPORT_LIGHTS
 from uplift.extras.papers.representations import samples
-from uplift.extras.report.comparison import delta_e_under, rms_difference
+from uplift.extras.report.comparison import compare_spectra
 from uplift.lab.runner import Row, named_lights
 from uplift.lab.study.unmirrored import fourier_basis, try_complex_multipliers
 from uplift.models import duality
@@ -185,11 +185,8 @@ def study_moments(
         moments = technique.moments(measured, samples.wavelengths(), count)
         spectra = technique.reconstruct(moments, observer.grid())
         colours = [lab(each @ d65.xyz.T, d65.white) for each in (spectra, original)]
-        columns = [
-            delta_e_1976(*colours),
-            delta_e_under(lights, spectra, original),
-            rms_difference(spectra, original),
-        ]
+        found = compare_spectra(original, spectra, lights)
+        columns = [delta_e_1976(*colours), found.delta_e, found.rms]
         errors.append(np.column_stack(columns))
     shape = (len(techniques), counts, len(measured), len(MEASURES))
     origins: list[str] = []

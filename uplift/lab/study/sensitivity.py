@@ -17,7 +17,7 @@ from uplift.common.errors import OptionError, UpliftWarning
 from uplift.common.progress import ProgressCallback, ignore_progress, reported
 from uplift.cube.data import CubeData
 from uplift.extras.colour.light_sets import NARROW_BAND_LIGHT
-from uplift.extras.report.comparison import delta_e_under, rms_difference
+from uplift.extras.report.comparison import compare_spectra
 from uplift.lab.runner import Row
 from uplift.lookup.cube import Cube
 from uplift.lookup.interpolate import MODES
@@ -149,15 +149,16 @@ def perturb_answers(
     rows = []
     for step, colours in moved.items():
         after = answer(colours)
-        light, own = delta_e_under(lights, before, after).T
+        found = compare_spectra(before, after, lights)
+        light, own = found.delta_e.T
         largest = np.argsort(light)[-HALVED:]
         ends = rgb[largest], colours[largest]
         rows.append(
             {
                 "mode": mode,
                 "step": step,
-                **mean_and_most("rms", rms_difference(after, before)),
-                "largest": float(np.abs(after - before).max()),
+                **mean_and_most("rms", found.rms),
+                "largest": float(found.deviation.max()),
                 **mean_and_most("light", light),
                 **mean_and_most("own", own),
                 "jump": _largest_jump(answer, lights[0], *ends),
@@ -219,7 +220,7 @@ def compare(
     """Compare the nodes of a cube with those after a change of its atlas, of all
     entries or of a named one.
     """
-    spectra = [node_spectra(data) for data in (before, after)]
+    found = compare_spectra(node_spectra(before), node_spectra(after), [light])
     distance = None
     if name:
         rgb = [
@@ -230,5 +231,4 @@ def compare(
         colours = (before.lattice.points, np.array(rgb))
         labs = [rgb_to_lab(before.sensor, colour) for colour in colours]
         distance = np.array([cdist(*pair).min(axis=1) for pair in (colours, labs)])
-    rms = rms_difference(*spectra)
-    return Change(description, rms, delta_e_spectra(light, *spectra), distance)
+    return Change(description, found.rms, found.delta_e[:, 0], distance)

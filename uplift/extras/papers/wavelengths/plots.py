@@ -16,8 +16,8 @@ from uplift.extras.papers.wavelengths.sampling import (
     RenderSetup,
     Sampling,
     interp_curves,
-    statistics,
 )
+from uplift.extras.report.comparison import mean_p95_max
 
 SIZE = (7.2, 1.7)
 """Inches of a panel."""
@@ -58,7 +58,7 @@ def plot_choice(
         highest = 1.3 * max(powers.max(), np.quantile(curve, 0.97))
         panels.append(Panel(marks, name, _X, Axis("power", limits=(0, highest)), dots))
     panels.append(_weights_panel(setup, sampling, area))
-    mean, p95, largest = statistics(choice.errors).values()
+    mean, p95, largest = mean_p95_max(choice.errors).values()
     measures = f"mean {mean:.2f}, 95th percentile {p95:.2f}, max {largest:.2f}"
     chosen_text = pluralise(len(sampling), "wavelength")
     title = f"{chosen_text}, {choice.method}: ΔE00 {measures}"

@@ -2,10 +2,9 @@
 colour errors they cause.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property, partial
-from typing import Any
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -27,12 +26,6 @@ STEP = 1.0
 """Step in nm that resolves the lines of fluorescent lamps."""
 MIN_SAMPLES = 16
 """Fewest samples of a wavelength grid."""
-MEASURES: Mapping[str, Callable[[Array], Any]] = {
-    "mean": np.mean,
-    "p95": partial(np.quantile, q=0.95),
-    "max": np.max,
-}
-"""Statistics of ΔE00 by name."""
 UNIFORM_START = 400.0
 """Start in nm of the range for which even spacing of few wavelengths errs least."""
 UNIFORM_END = 700.0
@@ -281,11 +274,6 @@ def evaluate(setup: RenderSetup, sampling: Sampling) -> Array:
     """
     xyz = sampling.xyz(setup.curves(sampling.wavelengths))
     return delta_e_2000(setup.lab, setup.to_lab(xyz))
-
-
-def statistics(errors: Array) -> dict[str, float]:
-    """Compute `MEASURES` of errors (K, M)."""
-    return {name: float(compute(errors)) for name, compute in MEASURES.items()}
 
 
 def midpoints(
