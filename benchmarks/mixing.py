@@ -18,12 +18,7 @@ from benchmarks.mixtures import (
 )
 from uplift.extras.colour.srgb import hex_codes
 from uplift.extras.paint.optics import average_areas
-from uplift.extras.paint.pigments import (
-    CONSTANT,
-    SQUARE_ROOT,
-    PowerOfReflectance,
-    dispersive,
-)
+from uplift.extras.paint.pigments import CONSTANT, SQUARE_ROOT, dispersive
 from uplift.extras.paint.rgb_mixer import make_mixer
 from uplift.extras.paint.theories import mixers
 from uplift.lookup.cube import Cube
@@ -35,8 +30,9 @@ DEFAULT = "Y^¾ exp(h / 4)"
 """Rule of ``uplift mix``."""
 STEPS = 11
 DRAWN = (
-    "pigments", "pigments in oil", "pigments, S = √R", "pigments, S = 1", "dyes",
-    "average", "ryb", "phosphors", "product",
+    "Kubelka–Munk", "Kubelka–Munk, in oil (index 1.5)", "Kubelka–Munk, S = √R",
+    "Kubelka–Munk, S = 1", "dyes on white", "average of RGB", "RYB-HSL",
+    "phosphor curves", "product of RGB",
 )  # fmt: skip
 
 
@@ -46,8 +42,8 @@ def ways(cube: Cube) -> dict[str, MixRgb]:
     rules = {
         "1": CONSTANT,
         "R^½": SQUARE_ROOT,
-        "R^¾": PowerOfReflectance(0.75),
-        "R^0.9": PowerOfReflectance(0.9),
+        "R^¾": lambda R: R**0.75,
+        "R^0.9": lambda R: R**0.9,
         "Y^½": replace(best, exponent=0.5, weight=0.0),
         "Y^¾": replace(best, weight=0.0),
         "Y": replace(best, exponent=1.0, weight=0.0),
@@ -89,9 +85,9 @@ def pictures() -> None:
     # Parts are the thickness of filters and products, so that a ramp ends at its
     # colours.
     ramps = {
-        theory.title: ramp_between(*BLUE_YELLOW, theory.mix, STEPS)
-        for theory in mixers(uplift.load())
-        if theory.name in DRAWN
+        title: ramp_between(*BLUE_YELLOW, mix, STEPS)
+        for title, mix in mixers(uplift.load()).items()
+        if title in DRAWN
     }
     draw_ramps(ramps, DOCS / "mixing" / "blue-yellow.png")
 

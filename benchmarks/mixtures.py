@@ -16,8 +16,7 @@ from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Array, Indices
 from uplift.extras.colour.srgb import decode, encode, parse_colour
 from uplift.extras.pages.plots import plot_strips
-from uplift.extras.paint.coats import ramp
-from uplift.extras.paint.optics import average_areas
+from uplift.extras.paint.optics import average_areas, ramp
 from uplift.extras.paint.pigments import Pigment, Scattering, from_opaque
 from uplift.lookup.cube import Cube
 

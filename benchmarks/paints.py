@@ -19,10 +19,10 @@ from uplift.colorimetry.delta_e import delta_e_rgb
 from uplift.common.arrays import Array
 from uplift.extras.colour.srgb import decode, encode
 from uplift.extras.pages.html import resource
-from uplift.extras.paint.coats import ramp
+from uplift.extras.paint.optics import ramp
 from uplift.extras.paint.paint_advice import advise_samples
 from uplift.extras.paint.paint_fit import fit_paints
-from uplift.extras.paint.paint_page import SCRIPTS, page_numbers, write_page
+from uplift.extras.paint.paint_page import SCRIPTS, page, page_numbers
 from uplift.extras.paint.paint_program import few_samples, write_program
 from uplift.extras.paint.paint_samples import (
     MeasuredColours,
@@ -251,7 +251,7 @@ def pictures() -> None:
     """Draw ramps of paints, and films on white and on black; write their page."""
     paints = INVENTED
     folder = DOCS / "mixing"
-    write_page(paints, folder / "paints.html", force=True)
+    (folder / "paints.html").write_text(page(paints), encoding="utf-8")
     alone = dict(zip(paints.names, np.eye(len(paints)), strict=True))
     shares = ramp(np.ones(2), STEPS)
     ramps = {}

@@ -14,9 +14,9 @@ import click
 
 from uplift.common.errors import ColourError, OptionError
 from uplift.common.text import format_value, parse_float
+from uplift.extras.images.sequences import UDIM
 
 from . import options
-from .inputs import UDIM
 from .option_types import distinct_light
 
 if TYPE_CHECKING:

@@ -4,16 +4,13 @@ All raise `UpliftError`.
 
 from __future__ import annotations
 
-import glob
 import math
 import os
 from collections.abc import Sequence
-from itertools import chain
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from uplift.common.errors import AtlasError, OptionError, OutputError, TextureError
-from uplift.common.files import check_regular
+from uplift.common.errors import AtlasError, OptionError, OutputError
 from uplift.common.text import format_value, parse_float
 
 from .output.diagnostics import warn
@@ -30,9 +27,6 @@ if TYPE_CHECKING:
 LOCAL = "atlases/*.txt"
 DEFAULT_ATLASES = f"{LOCAL} if there are any, or else the shipped atlases"
 """Default of ``--atlas``, as the help states it."""
-UDIM = "<UDIM>"
-"""Placeholder for the number of a tile, 1001 to 9999."""
-UDIM_DIGITS = "[1-9][0-9][0-9][0-9]"
 MAX_WAVELENGTHS = 100_000
 MAX_SIDE = 960
 """Pixels of the longer side of an image, as shown and compared."""
@@ -64,30 +58,6 @@ def read_atlases(files: Sequence[str | Path]) -> dict[str, Atlas]:
             )
         atlases[name] = read_atlas(file)
     return atlases
-
-
-def expand_patterns(sources: Sequence[str]) -> list[str]:
-    """Return the paths of images and patterns, in order. A pattern may hold the number
-    of a UDIM tile.
-
-    Raises `TextureError` for a path that is not a file, and for a pattern that matches
-    none.
-    """
-    paths = list(chain.from_iterable(_expand(source) for source in sources))
-    for path in paths:
-        check_regular(path, TextureError, hint="name images, or a pattern")
-    return paths
-
-
-def _expand(source: str) -> list[str]:
-    if os.path.exists(source) or not (glob.has_magic(source) or UDIM in source):
-        return [source]
-    paths = sorted(glob.glob(source.replace(UDIM, UDIM_DIGITS)))
-    if not paths:
-        raise TextureError(
-            f"no file matches the pattern '{source}'", hint="check the pattern"
-        )
-    return paths
 
 
 def read_pictures(

@@ -295,6 +295,3 @@ atlas_folders = repeatable(
 )
 force = flag("--force", help="Replace existing files.")
 quiet = flag("-q", "--quiet", help="Print only warnings and errors.")
-verbose = flag(
-    "-v", "--verbose", help="Print a line for every round and improvement step."
-)

@@ -1,6 +1,5 @@
 """Files that a command writes, compared beforehand with all that it reads."""
 
-import os
 from collections.abc import Callable, Iterable, Sequence
 
 import click
@@ -49,14 +48,6 @@ def write_files(
     for name, write in zip(names, writers, strict=True):
         write(folder / name, force=_is_forced())
     say(f"{folder}: {', '.join(names)}", err=True)
-
-
-def is_folder(path: str) -> bool:
-    """Return whether a path is that of a folder, or ends as one: on Windows with either
-    of two separators.
-    """
-    separators = tuple(filter(None, (os.sep, os.altsep)))
-    return path.endswith(separators) or os.path.isdir(path)
 
 
 def _is_forced() -> bool:

@@ -1,4 +1,4 @@
-"""Targets, fits and recipes of ``uplift paints``, read and printed."""
+"""Paints, fits and recipes of ``uplift paints`` as JSON, tables and pictures."""
 
 from __future__ import annotations
 
@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, Any
 from uplift.common.text import pluralise
 
 from .mixtures import MIXTURE_MAPPING
-from .output.console import make_table, paragraph, print_fields, say, show, swatch
+from .output.console import paragraph, print_fields, print_json, say
+from .output.table import Format, Table, swatch
 
 if TYPE_CHECKING:
-    from uplift.colorimetry.illuminants import Illuminant
     from uplift.common.arrays import Array
     from uplift.extras.paint.paint_advice import PaintAdvice
     from uplift.extras.paint.paint_fit import PaintFit
@@ -21,63 +21,88 @@ if TYPE_CHECKING:
 
 WORST = 5
 """Worst samples that are listed."""
-ODD = 3.0
-"""ΔE00, in that of the median sample, from which a sample may be wrong."""
-TINT_PARTS = 4
-"""Parts of white to one of paint in a tint."""
 REACHED = 1.0
 """ΔE00 up to which a recipe is a match."""
 PROVEN = 2
 """Paints of a recipe up to which no better parts exist."""
 
 
-def read_target(
-    paints: Paints,
-    colour: str | None,
-    spectrum_path: str | None,
-    cube_path: str | None,
-    files: Sequence[str],
-    lights: Sequence[Illuminant],
-    thickness: float | None,
-    ground: str | None,
-) -> PaintTarget:
-    """Return what a recipe should match, at the wavelengths of the paints."""
-    from uplift.atlas.atlas import Atlas
-    from uplift.atlas.resampling import on_grid
-    from uplift.atlas.sources import read_atlas
-    from uplift.extras.paint.recipes import PaintTarget
-    from uplift.lookup.cube import load
-
-    from .ingredients import SpectrumResolver
-
-    nm = paints.wavelengths
-    atlas = read_atlas(*files) if files else Atlas()
-    resolver = SpectrumResolver(load(cube_path), atlas, nm)
-    if spectrum_path is not None:
-        entry = read_atlas(spectrum_path).entries[0]
-        reflectance = on_grid(Atlas((entry,)), nm)[0]
-    else:
-        reflectance = resolver.spectrum(str(colour))
-    lit = tuple(paints.light(name) for name in lights or ("D65",))
-    backing: Array | float = 1.0 if ground is None else resolver.spectrum(ground)
-    return PaintTarget(reflectance, lit, thickness, backing)
+def coloured(code: str) -> Any:
+    """Return a cell with the code of a colour and a patch of it."""
+    return swatch(code, code)
 
 
-def _hex(paints: Paints, reflectance: Array) -> list[str]:
+def hex_codes(paints: Paints, reflectance: Array) -> list[str]:
     """Return '#rrggbb' of reflectances (n, N) at the wavelengths of paints, as `uplift
     mix` does.
     """
     from uplift.colorimetry.gamut import map_to_gamut
-    from uplift.extras.colour.srgb import hex_codes
+    from uplift.extras.colour import srgb
 
     rgb = paints.sensor.rgb(reflectance)
-    return hex_codes(map_to_gamut(rgb, paints.sensor, MIXTURE_MAPPING).rgb)
+    return srgb.hex_codes(map_to_gamut(rgb, paints.sensor, MIXTURE_MAPPING).rgb)
 
 
-def fit_fields(fitted: PaintFit, advice: PaintAdvice) -> dict[str, Any]:
-    """Return a fit as JSON values."""
-    samples = zip(fitted.samples.names, fitted.delta_e.tolist(), strict=True)
+def paint_fields(paints: Paints) -> dict[str, Any]:
+    """Return paints as JSON values."""
+    import numpy as np
+
+    colours = hex_codes(paints, paints.reflectance(np.eye(len(paints))))
+    columns = dict(vars(paints.pigments))
+    if paints.errors is not None:
+        columns |= {f"{key}_errors": rows for key, rows in vars(paints.errors).items()}
+    rows = []
+    for row, name in enumerate(paints.names):
+        fields: dict[str, Any] = {"name": name, "colour": colours[row]}
+        fields |= {key: values[row].tolist() for key, values in columns.items()}
+        if paints.prices and np.isfinite(paints.prices[row]):
+            fields["price"] = paints.prices[row]
+        rows.append(fields)
     return {
+        "wavelengths": paints.wavelengths.tolist(),
+        "surface": asdict(paints.surface),
+        "paints": rows,
+    }
+
+
+def print_paints(paints: Paints) -> None:
+    """Print a row for each paint."""
+    import numpy as np
+
+    from uplift.extras.paint.paints import TINT_PARTS, strengths
+
+    columns = {
+        "paint": paints.names,
+        "colour": hex_codes(paints, paints.reflectance(np.eye(len(paints)))),
+        "tint": hex_codes(paints, paints.tints()),
+        "strength": strengths(paints, paints.lightest).tolist(),
+    }
+    headings = {name: name for name in columns}
+    if paints.errors is not None:
+        columns["S"] = np.median(paints.errors.scattering, axis=1).tolist()
+        columns["K"] = np.median(paints.errors.absorption, axis=1).tolist()
+        headings |= {"S": "± S", "K": "± K"}
+    cells = zip(*columns.values(), strict=True)
+    rows = [dict(zip(columns, row, strict=True)) for row in cells]
+    formats: dict[str, Format] = {
+        "colour": coloured,
+        "tint": coloured,
+        "strength": ".2g",
+    }
+    Table(rows, headings, digits=".0%", formats=formats).print_text()
+    surface = paints.surface
+    paragraph(
+        f"Tints are 1 : {TINT_PARTS} with {paints.names[paints.lightest]}. The surface "
+        f"reflects {surface.outside:.1%} of light from air and {surface.inside:.0%} of "
+        "light from within."
+    )
+
+
+def print_fit_json(fitted: PaintFit, advice: PaintAdvice, output: str) -> None:
+    """Print a fit as JSON."""
+    samples = zip(fitted.samples.names, fitted.delta_e.tolist(), strict=True)
+    answer = {
+        "output": output,
         **paint_fields(fitted.paints),
         "notes": fitted.samples.notes,
         "noise": asdict(fitted.noise),
@@ -88,74 +113,7 @@ def fit_fields(fitted: PaintFit, advice: PaintAdvice) -> dict[str, Any]:
             for sample in advice.samples
         ],
     }
-
-
-def paint_fields(paints: Paints) -> dict[str, Any]:
-    """Return paints as JSON values."""
-    import numpy as np
-
-    colours = _hex(paints, paints.reflectance(np.eye(len(paints))))
-    rows = []
-    for row, name in enumerate(paints.names):
-        fields: dict[str, Any] = {"name": name, "colour": colours[row]}
-        fields["absorption"] = paints.pigments.absorption[row].tolist()
-        fields["scattering"] = paints.pigments.scattering[row].tolist()
-        if paints.errors is not None:
-            fields["absorption_errors"] = paints.errors.absorption[row].tolist()
-            fields["scattering_errors"] = paints.errors.scattering[row].tolist()
-        if paints.prices and np.isfinite(paints.prices[row]):
-            fields["price"] = paints.prices[row]
-        rows.append(fields)
-    return {
-        "wavelengths": paints.wavelengths.tolist(),
-        "surface": {
-            "outside": paints.surface.outside,
-            "inside": paints.surface.inside,
-        },
-        "paints": rows,
-    }
-
-
-def print_paints(paints: Paints) -> None:
-    """Print a row for each paint."""
-    import numpy as np
-
-    from uplift.extras.paint.paints import strengths
-
-    own = paints.reflectance(np.eye(len(paints)))
-    masstones = _hex(paints, own)
-    white = int(own.min(axis=1).argmax())
-    tint_parts = np.eye(len(paints)) + TINT_PARTS * np.eye(len(paints))[white]
-    tints = _hex(paints, paints.reflectance(tint_parts))
-    table = make_table(("paint", "", "tint", ""), ("strength", "± S", "± K"))
-    for row, name in enumerate(paints.names):
-        errors = ("", "")
-        if paints.errors is not None:
-            scattering = np.median(paints.errors.scattering[row])
-            absorption = np.median(paints.errors.absorption[row])
-            errors = (f"{scattering:.0%}", f"{absorption:.0%}")
-        table.add_row(
-            name,
-            _cell(masstones[row]),
-            tints[row],
-            _cell(tints[row], ""),
-            f"{strengths(paints, white)[row]:.2g}",
-            *errors,
-        )
-    show(table)
-    surface = paints.surface
-    paragraph(
-        f"Tints are 1 : {TINT_PARTS} with {paints.names[white]}. The surface reflects "
-        f"{surface.outside:.1%} of light from air and {surface.inside:.0%} of light "
-        "from within."
-    )
-
-
-def _cell(code: str, text: str | None = None) -> Any:
-    from rich.text import Text
-
-    cell = Text(code if text is None else text)
-    return cell.append(swatch(bytes.fromhex(code[1:])))
+    print_json(answer)
 
 
 def print_fit(fitted: PaintFit, advice: PaintAdvice) -> None:
@@ -164,46 +122,34 @@ def print_fit(fitted: PaintFit, advice: PaintAdvice) -> None:
 
     print_paints(fitted.paints)
     errors = fitted.delta_e
-    median = float(np.median(errors))
     say()
     paragraph(
         f"{pluralise(len(errors), 'sample')} predicted to a median ΔE00 of "
-        f"{median:.2f}, at most {errors.max():.2f}."
+        f"{np.median(errors):.2f}, at most {errors.max():.2f}."
     )
-    odd = [row for row in np.argsort(-errors) if errors[row] > max(ODD * median, 1.0)]
-    if odd:
-        worst = [f"{fitted.samples.names[row]} ({errors[row]:.1f})" for row in odd]
-        paragraph(f"Check the parts and measurements of: {', '.join(worst[:WORST])}.")
-    alone = [
-        name
-        for row, name in enumerate(fitted.paints.names)
-        if np.count_nonzero(fitted.samples.shares[:, row]) == 1
+    worst = [
+        f"{fitted.samples.names[row]} ({errors[row]:.1f})"
+        for row in fitted.doubtful[:WORST]
     ]
-    opaque = [name for name in alone if _is_masstone(fitted, name)]
-    if opaque:
+    if worst:
+        paragraph(f"Check the parts and measurements of: {', '.join(worst)}.")
+    if unmixed := fitted.samples.unmixed:
         paragraph(
             "Known by one opaque sample, which does not show the strength; a rule "
-            f"stands in for it: {', '.join(opaque)}."
+            f"stands in for it: {', '.join(unmixed)}."
         )
     if advice.samples:
         print_fields({"expected error": f"ΔE00 {advice.error:.2f} of mixtures of two"})
-        table = make_table(("measure next", "then expected ΔE00"))
-        for sample in advice.samples:
-            table.add_row(sample.name, f"{sample.error:.2f}")
-        show(table)
+        headings = {"name": "measure next", "error": "then expected ΔE00"}
+        Table(list(map(vars, advice.samples)), headings, digits=".2f").print_text()
 
 
-def _is_masstone(fitted: PaintFit, name: str) -> bool:
-    samples = fitted.samples
-    shares = samples.shares[:, samples.paints.index(name)]
-    row = int(shares.argmax())
-    return bool(shares[row] == 1 and samples.is_opaque[row])
-
-
-def match_fields(
+def recipe_rows(
     target: PaintTarget, paints: Paints, recipes: Sequence[PaintRecipe]
-) -> dict[str, Any]:
+) -> list[dict[str, Any]]:
     """Return recipes as JSON values."""
+    from uplift.extras.paint.recipes import elsewhere
+
     lights = [light.name for light in target.lights]
     rows = []
     for recipe in recipes:
@@ -211,65 +157,37 @@ def match_fields(
         rows.append(
             {
                 "paints": [{"name": name, "parts": parts} for name, parts in pairs],
-                "colour": _hex(paints, recipe.reflectance[None])[0],
+                "colour": hex_codes(paints, recipe.reflectance[None])[0],
                 "delta_e": dict(zip(lights, recipe.delta_e, strict=True)),
                 "elsewhere": elsewhere(target, paints, recipe),
                 "cost": None if recipe.cost != recipe.cost else recipe.cost,
             }
         )
-    return {
-        "colour": _hex(paints, target.reflectance[None])[0],
-        "lights": lights,
-        "recipes": rows,
-    }
-
-
-def elsewhere(
-    target: PaintTarget, paints: Paints, recipe: PaintRecipe
-) -> dict[str, float]:
-    """Return ΔE00 between a recipe and its target under further lights, the index of
-    metamerism.
-    """
-    from uplift.colorimetry.delta_e import delta_e_spectra
-    from uplift.extras.colour.light_sets import RELIGHT_LIGHTS
-
-    known = {light.name for light in target.lights}
-    errors = {}
-    for name in RELIGHT_LIGHTS:
-        light = paints.light(name)
-        if light.name not in known:
-            error = delta_e_spectra(light, recipe.reflectance, target.reflectance)
-            errors[light.name] = float(error)
-    return errors
+    return rows
 
 
 def print_recipes(
-    target: PaintTarget, paints: Paints, recipes: Sequence[PaintRecipe], count: int
+    rows: Sequence[dict[str, Any]], recipes: Sequence[PaintRecipe], code: str, most: int
 ) -> None:
-    """Print a row for each recipe."""
-    code = _hex(paints, target.reflectance[None])[0]
-    has_cost = any(recipe.cost == recipe.cost for recipe in recipes)
-    lights = [light.name for light in target.lights]
-    others = list(elsewhere(target, paints, recipes[0]))
-    table = make_table(
-        ("recipe", code),
-        (*(f"ΔE00 {name}" for name in lights), *others, *(["cost"] * has_cost)),
-    )
-    for recipe in recipes:
-        pairs = zip(recipe.parts, recipe.paints, strict=True)
-        text = " + ".join(f"{parts} {name}" for parts, name in pairs)
-        errors = [*recipe.delta_e, *elsewhere(target, paints, recipe).values()]
-        cells = [f"{error:.2f}" for error in errors]
-        cells += [f"{recipe.cost:.3g}"] * has_cost
-        mixed = _hex(paints, recipe.reflectance[None])[0]
-        table.add_row(text, _cell(mixed), *cells)
-    show(table)
+    """Print a row for each recipe, of at most so many paints, for a colour."""
+    errors = [row["delta_e"] | row["elsewhere"] for row in rows]
+    headings = {"recipe": "recipe", "colour": code}
+    headings |= {name: f"ΔE00 {name}" for name in rows[0]["delta_e"]}
+    headings |= {name: name for name in rows[0]["elsewhere"]}
+    if any(row["cost"] is not None for row in rows):
+        headings["cost"] = "cost"
+    lines = [
+        {"recipe": str(recipe), **row, **by_light}
+        for recipe, row, by_light in zip(recipes, rows, errors, strict=True)
+    ]
+    formats: dict[str, Format] = {"colour": coloured, "cost": ".3g"}
+    Table(lines, headings, digits=".2f", formats=formats).print_text()
     if recipes[0].error > REACHED:
         paragraph(
-            f"No mixture of {pluralise(min(count, len(paints)), 'paint')} reaches the "
-            f"colour: the nearest differs by ΔE00 {recipes[0].error:.1f}."
+            f"No mixture of {pluralise(most, 'paint')} reaches the colour: the nearest "
+            f"differs by ΔE00 {recipes[0].error:.1f}."
         )
-    if min(count, len(paints)) > PROVEN:
+    if most > PROVEN:
         paragraph(
             f"Recipes of more than {PROVEN} paints are the best of several solutions, "
             "not proven to be the best of all."
@@ -279,28 +197,21 @@ def print_recipes(
 def plot_recipes(
     target: PaintTarget, recipes: Sequence[PaintRecipe], path: str, *, force: bool
 ) -> None:
-    """Draw the target next to each recipe."""
+    """Draw the target next to each recipe, under the first light."""
     import numpy as np
 
+    from uplift.colorimetry import observer
+    from uplift.colorimetry.tables import bradford
     from uplift.extras.colour.srgb import encode
     from uplift.extras.pages.plots import plot_strips
 
     light = target.lights[0]
+    display = observer.sensor()
+    # The white of the light is shown as that of displays.
+    to_rgb = display.xyz_to_rgb @ bradford(light.white, display.light.white)
     strips = {}
     for recipe in recipes:
-        pairs = zip(recipe.parts, recipe.paints, strict=True)
-        title = " + ".join(f"{parts} {name}" for parts, name in pairs)
         spectra = np.stack([target.reflectance, recipe.reflectance])
-        colours = _display(spectra @ light.xyz.T, light.white)
-        strips[f"{title}: ΔE00 {recipe.error:.2f}"] = encode(colours)
+        title = f"{recipe}: ΔE00 {recipe.error:.2f}"
+        strips[title] = encode(spectra @ light.xyz.T @ to_rgb.T)
     plot_strips(strips, path, force=force)
-
-
-def _display(xyz: Array, white: Array) -> Array:
-    """Return linear sRGB (n, 3) of XYZ, adapted to the white of displays."""
-    from uplift.colorimetry import observer
-    from uplift.colorimetry.tables import bradford
-
-    display = observer.sensor()
-    adapt = bradford(white, display.light.white)
-    return xyz @ (display.xyz_to_rgb @ adapt).T

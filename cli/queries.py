@@ -18,10 +18,10 @@ from .output.diagnostics import warn
 
 if TYPE_CHECKING:
     from uplift.colorimetry.illuminants import Illuminant
-    from uplift.colorimetry.sensor import Light
+    from uplift.colorimetry.sensor import Light, Sensor
     from uplift.common.arrays import Array
     from uplift.extras.colour.colour_source import ColourSource
-    from uplift.extras.colour.query import QueryBlock, QueryResult
+    from uplift.extras.colour.query import QueryBlock
     from uplift.extras.photographs.colour import PhotographedColour
 
 PACKAGED = "packaged"
@@ -154,16 +154,15 @@ class Answers:
             f"{Path(file).name}: {dim}³ nodes, {', '.join(atlases) or 'no atlas'}"
         )
         self.lights: list[Light] = []
-        # matrices from XYZ under a light to linear sRGB with the same white
-        self.to_srgb: dict[str, Array] = {}
+        self.displays: Sequence[Sensor] = ()
+        """Linear sRGB with the white of each light."""
         if lights:
             from uplift.colorimetry.observer import display_sensors
             from uplift.colorimetry.observer import lights as find_lights
 
-            setting = self.cube.observer, data.sensor.range
-            self.lights = find_lights(lights, *setting)
-            for display in display_sensors(lights, setting[0], *setting[1]):
-                self.to_srgb[display.illuminant] = display.xyz_to_rgb
+            observer = self.cube.observer
+            self.lights = find_lights(lights, observer, data.sensor.range)
+            self.displays = display_sensors(lights, observer, *data.sensor.range)
 
     def __iter__(self) -> Iterator[QueryBlock]:
         """Answer blocks, and warn at the end of colours that were mapped or filled."""
@@ -216,17 +215,3 @@ class Answers:
                 "filled from the packaged cube"
             )
             warn([UpliftWarning(problem)])
-
-    def light_colours(
-        self, answers: QueryBlock | QueryResult
-    ) -> dict[str, tuple[Array, list[str]]]:
-        """Return linear sRGB (n, 3) and '#rrggbb' (n,) of n answers, or of one, by
-        light; its white is that of the screen.
-        """
-        from uplift.extras.colour.srgb import hex_codes
-
-        colours = {}
-        for light, xyz in answers.light_xyz.items():
-            rgb = (self.to_srgb[light] @ xyz.reshape(-1, 3, 1))[..., 0]
-            colours[light] = rgb, hex_codes(rgb)
-        return colours

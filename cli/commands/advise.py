@@ -4,30 +4,39 @@ next.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import asdict
-from itertools import chain
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
-from uplift.colorimetry.illuminants import Illuminant
 from uplift.common.text import pluralise
+from uplift.extras.images.sequences import expand_patterns
 
 from .. import options
 from ..also import noise
-from ..inputs import expand_patterns, read_pictures
-from ..output.console import make_table, print_json, say, show
+from ..inputs import read_pictures
+from ..output.console import say
 from ..output.progress import progress_bar
+from ..output.table import Format, Table, print_result, swatch
 from ..outputs import check_outputs
 
 if TYPE_CHECKING:
+    from uplift.colorimetry.illuminants import Illuminant
     from uplift.extras.scene.second_light import RemainingError
 
 SHOWN = 4
 """Images of a picture."""
-DEFAULT_NOISE = 0.005, 0.0005
-"""Noise of photographs that are not taken yet."""
+SECOND_LIGHT = {"light": "second light", "mean": "expected ΔE00", "errors": "largest"}
+LIGHT = {"light": "light", "before": "expected ΔE00 (95 % of the pixels)"}
+SWATCH = {
+    "hex": "swatch",
+    "share": "pixels like it",
+    "error": "expected ΔE00",
+    "gain": "gain in the mean",
+    "mean_after": "mean ΔE00 after",
+}
 
 
 @click.command(
@@ -99,159 +108,102 @@ def command(
     force: bool,
     **pixels: Any,
 ) -> None:
-    given = options.given()
-    for_swatches = ("count", "plot_path")
-    for_photographs = ("candidates", "noise")
-    if unused := [name for name in for_swatches if second_light and name in given]:
-        problem = f"{given[unused[0]]} does not apply to --second-light."
-        raise click.UsageError(problem)
-    if unused := [
-        name for name in for_photographs if not second_light and name in given
-    ]:
-        raise click.UsageError(f"{given[unused[0]]} requires --second-light.")
-    if second_light:
-        assumed = noise or DEFAULT_NOISE
-        _advise_light(images, cube_path, lights, candidates, assumed, style, pixels)
-        return
-    _advise_swatches(images, cube_path, lights, count, plot_path, style, force, pixels)
-
-
-def _advise_light(
-    images: tuple[str, ...],
-    cube_path: str | None,
-    lights: tuple[Illuminant, ...],
-    candidates: tuple[Illuminant, ...],
-    noise: tuple[float, float],
-    style: str,
-    pixels: dict[str, Any],
-) -> None:
-    """Rank lights of a second photograph, and print them."""
     from uplift.colorimetry.observer import lights as find_lights
-    from uplift.extras.colour.light_sets import HELD_OUT_LIGHTS
-    from uplift.extras.scene import second_light
-    from uplift.extras.scene.advice import colour_areas
-    from uplift.extras.texture.scene_colours import Images
-    from uplift.lookup.cube import load
-
-    paths = expand_patterns(images)
-    cube = load(cube_path)
-    sensor = cube.data.sensor
-    compared = candidates or second_light.default_candidates(cube)
-    lit = find_lights(lights or HELD_OUT_LIGHTS, cube.observer, sensor.range)
-    with progress_bar("comparing lights"):
-        colours = colour_areas(Images(tuple(map(Path, paths)), **pixels), sensor)
-        without = second_light.error_without(cube, colours, lit)
-        ranked = second_light.rank_second_lights(cube, colours, compared, lit, noise)
-    if style == "json":
-        rows = [
-            {"light": row.light, "mean": row.mean, "errors": row.by_light}
-            for row in (without, *ranked)
-        ]
-        print_json(
-            {
-                "images": paths,
-                "cube": cube_path,
-                "noise": {"share": noise[0], "floor": noise[1]},
-                "without": rows[0],
-                "second_lights": rows[1:],
-            }
-        )
-        return
-    _print_ranking(without, ranked)
-
-
-def _print_ranking(without: RemainingError, ranked: list[RemainingError]) -> None:
-    from uplift.extras.colour.light_sets import DESCRIPTIONS
-
-    table = make_table(("second light", ""), ("expected ΔE00", "largest", "under"))
-    for row in (*ranked, without):
-        name = row.light or "none"
-        worst = max(row.by_light, key=row.by_light.__getitem__)
-        numbers = (f"{row.mean:.2f}", f"{row.by_light[worst]:.2f}")
-        table.add_row(name, DESCRIPTIONS.get(name, ""), *numbers, worst)
-    show(table)
-
-
-def _advise_swatches(
-    images: tuple[str, ...],
-    cube_path: str | None,
-    lights: tuple[Illuminant, ...],
-    count: int,
-    plot_path: str | None,
-    style: str,
-    force: bool,
-    pixels: dict[str, Any],
-) -> None:
-    """Choose swatches, and print and draw them."""
-    from uplift.colorimetry.observer import lights as find_lights
-    from uplift.extras.colour.light_sets import RELIGHT_LIGHTS
+    from uplift.extras.colour import light_sets
     from uplift.extras.colour.srgb import hex_codes
     from uplift.extras.scene import advice
+    from uplift.extras.scene import second_light as photographs
     from uplift.extras.texture.scene_colours import Images
     from uplift.lookup.cube import load
 
+    _check_options(second_light=second_light)
     paths = expand_patterns(images)
     check_outputs(plot_path, inputs=paths)
     cube = load(cube_path)
     sensor = cube.data.sensor
-    lit = find_lights(lights or RELIGHT_LIGHTS, cube.observer, sensor.range)
-    with progress_bar("choosing swatches"):
+    usual = light_sets.HELD_OUT_LIGHTS if second_light else light_sets.RELIGHT_LIGHTS
+    lit = find_lights(lights or usual, cube.observer, sensor.range)
+    data: dict[str, Any] = {"images": paths, "cube": cube_path}
+    with progress_bar("comparing lights" if second_light else "choosing swatches"):
         colours = advice.colour_areas(Images(tuple(map(Path, paths)), **pixels), sensor)
-        before = advice.uncertainty(cube, colours, lit)
-        chosen, after = advice.advise(before, count)
-    rgb = colours.rgb[[swatch.colour for swatch in chosen]]
+        if second_light:
+            assumed = noise or photographs.NOISE
+            compared = candidates or photographs.default_candidates(cube)
+            without = photographs.error_without(cube, colours, lit)
+            ranked = photographs.rank_second_lights(
+                cube, colours, compared, lit, assumed
+            )
+        else:
+            before = advice.uncertainty(cube, colours, lit)
+            chosen, after = advice.advise(before, count)
+    if second_light:
+        data["noise"] = {"share": assumed[0], "floor": assumed[1]}
+        _print_lights(style, data, without, ranked)
+        return
+    rgb = colours.rgb[[row.colour for row in chosen]]
+    codes = hex_codes(rgb, sensor)
     swatches = [
-        {"hex": code, **asdict(swatch)}
-        for code, swatch in zip(hex_codes(rgb, sensor), chosen, strict=True)
+        {"hex": code, **asdict(row)} for code, row in zip(codes, chosen, strict=True)
     ]
+    stages = zip(lit, before.by_light(), after.by_light(), strict=True)
+    errors = {light.name: {"before": now, "after": then} for light, now, then in stages}
     if plot_path is not None:
         from uplift.extras.pages.figure import write_figure
 
         shown = paths[:SHOWN]
-        images_read = read_pictures(shown, sensor, **pixels)
-        pictures = {
-            path: picture.rgb for path, picture in zip(shown, images_read, strict=True)
-        }
+        read = read_pictures(shown, sensor, **pixels)
+        pictures = dict(zip(shown, (picture.rgb for picture in read), strict=True))
         texts = map("{hex}  ΔE00 −{gain:.2f}".format_map, swatches)
         chips = list(zip(texts, rgb, strict=True))
         figure = advice.draw_advice(cube, pictures, lit, chips)
         write_figure(figure, plot_path, force=force)
-    stages = zip(lit, before.by_light(), after.by_light(), strict=True)
-    errors = {light.name: {"before": now, "after": then} for light, now, then in stages}
-    if style == "json":
-        print_json(
-            {
-                "images": paths,
-                "cube": cube_path,
-                "lights": errors,
-                "swatches": swatches,
-            }
-        )
-        return
-    _print_tables(errors, swatches)
-    if plot_path is not None:
+    data |= {"lights": errors, "swatches": swatches}
+    stage = "{mean:.2f} ({p95:.2f})".format_map
+    by_light = Table(
+        [{"light": name, **stages} for name, stages in errors.items()],
+        LIGHT | {"after": f"after {pluralise(len(swatches), 'swatch')}"},
+        formats={"before": stage, "after": stage},
+    )
+    formats: dict[str, Format] = {
+        "hex": lambda code: swatch(code, code),
+        "share": ".1%",
+    }
+    by_swatch = Table(swatches, SWATCH, digits=".2f", formats=formats)
+    print_result(style, data, by_light, by_swatch)
+    if plot_path is not None and style != "json":
         say(plot_path, err=True)
 
 
-def _print_tables(
-    errors: dict[str, dict[str, dict[str, float]]], swatches: list[dict[str, Any]]
+def _check_options(*, second_light: bool) -> None:
+    """Raise a usage error for options of the other kind of advice."""
+    given = options.given()
+    relation = "does not apply to" if second_light else "requires"
+    for name in ("count", "plot_path") if second_light else ("candidates", "noise"):
+        if name in given:
+            raise click.UsageError(f"{given[name]} {relation} --second-light.")
+
+
+def _print_lights(
+    style: str,
+    data: dict[str, Any],
+    without: RemainingError,
+    ranked: Sequence[RemainingError],
 ) -> None:
-    headings = (
-        "expected ΔE00",
-        "95 % of the pixels",
-        f"after {pluralise(len(swatches), 'swatch')}",
-        "95 %",
-    )
-    summary = make_table(("light",), headings)
-    for name, stages in errors.items():
-        numbers = chain.from_iterable(stage.values() for stage in stages.values())
-        summary.add_row(name, *map("{:.2f}".format, numbers))
-    table = make_table(
-        ("swatch",),
-        ("pixels like it", "expected ΔE00", "gain in the mean", "mean ΔE00 after"),
-    )
-    for row in swatches:
-        share = f"{row['share']:.1%}"
-        reduced = (row["error"], row["gain"], row["mean_after"])
-        table.add_row(row["hex"], share, *map("{:.2f}".format, reduced))
-    show(summary, table)
+    rows = [
+        {"light": error.light, "mean": error.mean, "errors": error.by_light}
+        for error in (*ranked, without)
+    ]
+    data |= {"without": rows[-1], "second_lights": rows[:-1]}
+    formats: dict[str, Format] = {"light": _describe, "errors": _largest}
+    print_result(style, data, Table(rows, SECOND_LIGHT, digits=".2f", formats=formats))
+
+
+def _describe(light: str) -> str:
+    from uplift.extras.colour.light_sets import DESCRIPTIONS
+
+    return f"{light}, {DESCRIPTIONS[light]}" if light in DESCRIPTIONS else light
+
+
+def _largest(errors: dict[str, float]) -> str:
+    light = max(errors, key=errors.__getitem__)
+    return f"{errors[light]:.2f} under {light}"

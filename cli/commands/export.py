@@ -1,14 +1,23 @@
 """``uplift export``: write a cube in formats of other tools."""
 
-from collections.abc import Sequence
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from itertools import groupby
 from pathlib import Path
 from typing import Any
 
 import click
 
+from uplift.common.errors import StrPath
 from uplift.common.extensions import import_part
-from uplift.extras.export.registry import known_exports
+from uplift.extras.export.registry import (
+    PAINT_EXPORTS,
+    RUNTIMES,
+    Export,
+    known_exports,
+)
 
 from .. import options
 from ..output.console import say
@@ -18,21 +27,6 @@ from ..outputs import stated_inputs
 EXPORTS = known_exports()
 WIDTH = 6
 """Characters of names of formats before what they are."""
-
-
-PAINTS = ".toml"
-"""Suffix of files of paints."""
-HEADER = ("C and C++", "uplift.extras.export.runtime:write_header")
-MODULE = ("JavaScript", "uplift.extras.export.module:write_module")
-READERS = {
-    ".h": HEADER,
-    ".hpp": HEADER,
-    ".hh": HEADER,
-    ".js": MODULE,
-    ".mjs": MODULE,
-}
-"""Languages of the files that read cubes, and the functions that write them, by suffix.
-"""
 
 
 def _summary() -> str:
@@ -135,7 +129,7 @@ HELP = """Write a cube in a format that other tools read.
     help="Write uplift.h or uplift.js, which read cube files, instead of a cube.",
 )
 @options.repeatable(
-    "--paint", "names", "Paint of a file of paints", "all", metavar="NAME"
+    "--paint", "paint", "Paint of a file of paints", "all", metavar="NAME"
 )
 @options.force
 def command(
@@ -144,120 +138,94 @@ def command(
     style: str | None,
     fill_missing: bool,
     runtime: bool,
-    names: Sequence[str],
     force: bool,
     **given: Any,
 ) -> None:
+    settings = {name: value for name, value in given.items() if value not in (None, ())}
+    if fill_missing:
+        settings["fill_missing"] = True
+    if runtime and cube and output:
+        raise click.UsageError("--runtime writes one file: give it once.")
     if runtime:
-        unused = (style, fill_missing or None, names or None, *given.values())
-        if any(value is not None for value in unused):
-            raise click.UsageError("--runtime goes with --output and --force only.")
-        _write_runtime(cube, output, force=force)
-        return
-    if cube is None:
+        source, output = READERS, output or cube or "uplift.h"
+    elif cube is None:
         raise click.UsageError("Give a cube, or --runtime.")
-    if Path(cube).suffix.lower() == PAINTS:
-        if fill_missing or any(value is not None for value in given.values()):
-            raise click.UsageError(
-                "Paints take --output, --format, --paint and --force only."
-            )
-        _export_paints(cube, output, style, names, force=force)
-        return
-    if names:
-        raise click.UsageError("--paint applies to a file of paints.")
-    style = style or _style_of(output)
-    export = EXPORTS[style]
-    settings = {name: value for name, value in given.items() if value is not None}
-    for name in settings:
-        if name not in export.options:
-            formats = [key for key in EXPORTS if name in EXPORTS[key].options]
-            raise click.UsageError(f"--{name} applies to {', '.join(formats)} only.")
+    else:
+        source = PAINTS if Path(cube).suffix.lower() == ".toml" else CUBES
+    inputs = () if runtime else stated_inputs()
+    write_export(source, cube, output, style, settings, inputs=inputs, force=force)
+
+
+def write_export(
+    source: Source,
+    name: str | None,
+    output: str | None,
+    style: str | None,
+    settings: dict[str, Any],
+    *,
+    inputs: Sequence[StrPath],
+    force: bool,
+) -> None:
+    """Write what is read by its name in a format, by default that of the suffix."""
+    from uplift.common.files import check_output
+    from uplift.extras.export.outputs import output_files
+    from uplift.extras.export.program import check_form
+    from uplift.extras.files.outputs import check_outputs
+
+    style = style or _style_of(output, source.formats)
+    if style not in source.formats:
+        formats = ", ".join(source.formats)
+        raise click.UsageError(f"--format must be one of {formats}, got {style}.")
+    export = source.formats[style]
+    for key in settings.keys() - {source.option, *export.options}:
+        option = key.replace("_", "-")
+        raise click.UsageError(f"--{option} does not apply to the format {style}.")
     if "adapt" in export.options and "light" not in settings:
         raise click.UsageError(
             "A cube or clf table shows the colours under a light: give --light, such "
             "as HP1."
         )
-    from uplift.common.files import check_output
-    from uplift.extras.export.outputs import output_files
-    from uplift.extras.export.program import check_form
-    from uplift.extras.files.outputs import check_outputs
-    from uplift.lookup.cube import load
-
     form = style
     if "table" in export.options:
         form = check_form(style, settings.get("table"))
-    files = output_files(output or Path(cube).stem + export.suffix, form)
-    inputs = stated_inputs()
+    files = output_files(output or Path(name or "").stem + export.suffix, form)
     path = check_output(files[0], inputs=inputs, force=force)
     # Second files that exist are judged by their content.
     check_outputs(files, inputs=inputs, force=True)
-    loaded = load(cube).fill_missing() if fill_missing else load(cube)
+    content: Any = import_part(source.reader)(name) if source.reader else None
+    if settings.pop("fill_missing", None):
+        content = content.fill_missing()
+    if names := settings.pop("paint", None):
+        content = content.select(names)
     write = import_part(export.writer)
     with progress_bar(f"writing {path}"):
-        written = write(loaded, path, style, force=force, **settings)
+        written = write(content, path, style, force=force, **settings)
     say(f"{path}: {written}")
 
 
-def _write_runtime(name: str | None, output: str | None, *, force: bool) -> None:
-    """Write what reads cube files, to a name after the option or to the output."""
-    if name is not None and output is not None:
-        raise click.UsageError("--runtime writes one file: give it once.")
-    from uplift.common.files import check_output
+@dataclass(frozen=True)
+class Source:
+    """What is exported: its formats, the function that reads it, as
+    ``"module:function"``, and an option that selects a part of it.
+    """
 
-    path = check_output(output or name or "uplift.h", force=force)
-    suffix = path.suffix.lower()
-    if suffix not in READERS:
-        raise click.UsageError(
-            f"--runtime writes files that end in {', '.join(READERS)}, got {path}: C "
-            "and C++, or an ES module, which CommonJS loads by await import()."
-        )
-    language, writer = READERS[suffix]
-    import_part(writer)(path, force=force)
-    size = path.stat().st_size / 1e3
-    say(f"{path}: reads cube files in {language}, {size:.0f} kB")
+    formats: Mapping[str, Export]
+    reader: str = ""
+    option: str = ""
 
 
-def _export_paints(
-    path: str,
-    output: str | None,
-    style: str | None,
-    names: Sequence[str],
-    *,
-    force: bool,
-) -> None:
-    """Write paints as a program, a table or a page."""
-    from uplift.common.files import check_output
-    from uplift.extras.paint.paint_exports import PAINT_EXPORTS
-    from uplift.extras.paint.paints_file import read_paints
-
-    by_suffix = {export.suffix: name for name, export in PAINT_EXPORTS.items()}
-    style = style or by_suffix.get(Path(output or "").suffix.lower())
-    if style not in PAINT_EXPORTS:
-        raise click.UsageError(
-            f"Give --output ending in {', '.join(by_suffix)}, or --format for paints: "
-            f"{', '.join(PAINT_EXPORTS)}."
-        )
-    export = PAINT_EXPORTS[style]
-    target = check_output(
-        output or Path(path).stem + export.suffix, inputs=[path], force=force
-    )
-    paints = read_paints(path)
-    if names:
-        paints = paints.select(names)
-    with progress_bar(f"writing {target}"):
-        written = export.write(paints, target, style, force=force)
-    say(f"{target}: {written}")
+CUBES = Source(EXPORTS, "uplift.lookup.cube:load", "fill_missing")
+PAINTS = Source(PAINT_EXPORTS, "uplift.extras.paint.paints_file:read_paints", "paint")
+READERS = Source(RUNTIMES)
 
 
-def _style_of(output: str | None) -> str:
+def _style_of(output: str | None, formats: Mapping[str, Export]) -> str:
     """Return the format of a file by its suffix. Raise `click.UsageError`."""
-    suffixes = dict[str, str]()
-    for name, export in EXPORTS.items():
-        suffixes.setdefault(export.suffix, name)
     suffix = Path(output or "").suffix.lower()
-    style = suffixes.get(".cuh" if suffix == ".cu" else suffix)
-    if style is None:
-        raise click.UsageError(
-            f"Give --format, or --output ending in {', '.join(suffixes)}."
-        )
-    return style
+    suffix = ".cuh" if suffix == ".cu" else suffix
+    for name, export in formats.items():
+        if export.suffix == suffix:
+            return name
+    known = list(dict.fromkeys(export.suffix for export in formats.values()))
+    choice = "" if len(known) == len(formats) else "--format, or "
+    raise click.UsageError(f"Give {choice}--output ending in {', '.join(known)}.")

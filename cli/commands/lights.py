@@ -12,14 +12,17 @@ import click
 
 from uplift.common.files import check_output
 from uplift.common.text import pluralise
+from uplift.extras.export.registry import LIGHT_EXPORTS
 from uplift.extras.files.outputs import check_outputs
 
 from .. import options, sensor_options
 from ..inputs import check_range
 from ..output.answers import format_rgb, print_spectrum, sparkline
-from ..output.console import json_output, print_csv, print_json_answers, say
+from ..output.console import say
 from ..output.passes import print_numbers
+from ..output.table import Table, print_json_rows
 from ..queries import colour_sources, find_colours
+from .export import Source, write_export
 from .info import print_facts
 from .texture import as_tuple, convert, image_options, passes_option
 
@@ -29,8 +32,6 @@ if TYPE_CHECKING:
 
 PACKAGED = "emission"
 """Name of the packaged table."""
-LANGUAGES = {".h": "c", ".glsl": "glsl"}
-"""Languages of `uplift.extras.export.write_light_program` by suffix."""
 
 table_argument = click.argument(
     "table_path", metavar="[TABLE]", required=False, default=PACKAGED, type=click.Path()
@@ -158,25 +159,12 @@ def info(table_path: str, style: str, plot_path: str | None, force: bool) -> Non
 @options.table
 @options.force
 def export(table_path: str, output: str, table: str | None, force: bool) -> None:
-    from uplift.extras.emission.lookup import load_emission
-    from uplift.extras.export.light_program import write_light_program
-    from uplift.extras.export.outputs import output_files
-    from uplift.extras.export.program import check_form
+    settings = {} if table is None else {"table": table}
+    inputs = [table_path]
+    write_export(LIGHTS, table_path, output, None, settings, inputs=inputs, force=force)
 
-    language = LANGUAGES.get(Path(output).suffix.lower())
-    if language is None:
-        raise click.UsageError(f"--output must end in {' or '.join(LANGUAGES)}.")
-    files = output_files(output, check_form(language, table))
-    path = check_output(files[0], inputs=[table_path], force=force)
-    # a table that exists is judged by its content
-    check_outputs(files, inputs=[table_path], force=True)
-    data = load_emission(table_path).data
-    written = write_light_program(data, path, style=language, form=table, force=force)
-    size = sum(file.stat().st_size for file in written) / 1e6
-    tables = "".join(map(", table in {}".format, written[1:]))
-    knots, rings = data.lattice.shape
-    lamps = pluralise(len(data.entries.names), "lamp")
-    say(f"{path}: {pluralise(knots * rings, 'node')}, {lamps}, {size:.1f} MB{tables}")
+
+LIGHTS = Source(LIGHT_EXPORTS, "uplift.extras.emission.lookup:load_emission")
 
 
 @command.command(
@@ -287,32 +275,29 @@ def query(
         options.exclude("--passes", "plot_path", "wavelengths")
         print_numbers(_pass_numbers(table, blocks, passes, outside), style)
         return
-    results: Iterable[dict[str, Any]] = _answers(table, blocks, at, outside)
+    lights: Iterable[dict[str, Any]] = _answers(table, blocks, at, outside)
     if plot_path is not None:
         from uplift.extras.pages.plots import plot_lights
 
-        results = list(results)
-        lights = [(np.array(light["rgb"]), at, light["power"]) for light in results]
-        plot_lights(lights, table, plot_path, force=force)
-        say(f"{plot_path}: {pluralise(len(results), 'light')}", err=True)
+        lights = list(lights)
+        spectra = [
+            (np.array(light["rgb"]), at, np.array(light["power"])) for light in lights
+        ]
+        plot_lights(spectra, table, plot_path, force=force)
+        say(f"{plot_path}: {pluralise(len(spectra), 'light')}", err=True)
     if style == "json":
-        texts = (
-            [json_output(result | {"power": result["power"].tolist()})]
-            for result in results
-        )
-        print_json_answers(texts, single=source.single)
+        print_json_rows(lights, single=source.single)
     elif style == "csv":
-        header = ["r", "g", "b", "expected_error", *map("{:g}".format, at)]
-        print_csv(header, map(_csv_row, results))
+        Table(map(_csv_row, lights)).print_csv()
     elif source.single:
-        (result,) = results
-        _print_light(result, table.space, at, complete=wavelengths is not None)
+        (light,) = lights
+        _print_light(light, table.space, at, complete=wavelengths is not None)
     else:
-        say(f"{'linear RGB':<34}{'ΔE00':>6}  spectrum")
-        for result in results:
-            text = " ".join(map("{:.4g}".format, result["rgb"]))
-            shape = sparkline(result["power"] / _peak(result["power"]), 32)
-            say(f"{text:<34}{result['expected_error']:>6.2f}  {shape}")
+        Table(
+            lights,
+            {"rgb": "linear RGB", "expected_error": "ΔE00", "power": "spectrum"},
+            formats={"rgb": ".4g", "expected_error": ".2f", "power": _draw},
+        ).print_text()
 
 
 def _pass_numbers(
@@ -331,33 +316,44 @@ def _pass_numbers(
         yield from zip(rgb.tolist(), numbers.tolist(), strict=True)
 
 
-def _csv_row(result: dict[str, Any]) -> Sequence[float]:
-    return [*result["rgb"], result["expected_error"], *result["power"].tolist()]
+def _csv_row(light: dict[str, Any]) -> dict[str, Any]:
+    powers = zip(light["wavelengths"], light["power"], strict=True)
+    return {
+        "rgb": light["rgb"],
+        "expected_error": light["expected_error"],
+        **{f"{nm:g}": power for nm, power in powers},
+    }
 
 
 def _print_light(
-    result: dict[str, Any], space: str, wavelengths: Array, *, complete: bool
+    light: dict[str, Any], space: str, wavelengths: Array, *, complete: bool
 ) -> None:
-    power = result["power"]
-    peak = f"{power.max():.5g} at {wavelengths[power.argmax()]:g} nm"
+    import numpy as np
+
+    power = np.array(light["power"])
     fields = {
-        "linear RGB": f"{format_rgb(result['rgb'])} ({space})",
-        "round trip": format_rgb(result["round_trip"]["rgb"]),
+        "linear RGB": f"{format_rgb(light['rgb'])} ({space})",
+        "round trip": format_rgb(light["round_trip"]["rgb"]),
         "expected error": (
-            f"ΔE00 {result['expected_error']:.2g} of surfaces, to a measured lamp of "
+            f"ΔE00 {light['expected_error']:.2g} of surfaces, to a measured lamp of "
             "this RGB"
         ),
-        "peak": peak,
+        "peak": f"{power.max():.5g} at {wavelengths[power.argmax()]:g} nm",
     }
-    print_spectrum(fields, wavelengths, power, complete=complete, highest=_peak(power))
+    highest = _peak(light["power"])
+    print_spectrum(fields, wavelengths, power, complete=complete, highest=highest)
+
+
+def _draw(power: list[float]) -> str:
+    import numpy as np
+
+    return sparkline(np.array(power) / _peak(power), 32)
 
 
 def _answers(
     table: EmissionTable, blocks: Iterable[Array], at: Array, outside: str
 ) -> Iterator[dict[str, Any]]:
-    """Answer blocks of XYZ (n, 3), each before the next one is read, by JSON values and
-    ``power`` (N,).
-    """
+    """Yield the answers to blocks of XYZ (n, 3), each before the next one is read."""
     for xyz in blocks:
         answers = table.rgb(table.spectrum_of_xyz(xyz, outside=outside))
         power = table.spectrum_of_xyz(xyz, at, outside=outside)
@@ -369,12 +365,12 @@ def _answers(
             yield {
                 "rgb": rgb.tolist(),
                 "wavelengths": at.tolist(),
-                "power": row,
+                "power": row.tolist(),
                 "round_trip": {"rgb": answer.tolist()},
                 "expected_error": float(error),
             }
 
 
-def _peak(power: Array) -> float:
+def _peak(power: list[float]) -> float:
     """Return the largest power, for sparklines relative to it."""
-    return max(float(power.max()), 1e-300)
+    return max(*power, 1e-300)

@@ -3,41 +3,40 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
 import click
 
-from uplift.common.errors import OutputError
+from uplift.common.errors import OptionError, OutputError
 from uplift.common.text import pluralise
 
 from .. import options
-from ..ingredients import SpectrumResolver
 from ..inputs import check_range, find_input_space
 from ..mixtures import (
     MIXTURE_MAPPING,
-    Recipe,
-    mix_ramp,
     plot_ramp,
-    print_mixture_json,
-    print_mixture_table,
+    print_mixture,
     print_theories,
-    read_recipe,
 )
 from ..output.console import say
 from ..output.diagnostics import warn
 from ..output.progress import progress_bar
 from ..outputs import check_outputs
 from ..startup import enable_jit_cache
+from ..surfaces import SURFACE, stated_surface, surface_options
 
 if TYPE_CHECKING:
     from uplift.colorimetry.sensor import Sensor
     from uplift.common.arrays import Array
-    from uplift.extras.paint.coats import Medium
-    from uplift.extras.paint.optics import Surface
+    from uplift.extras.images.converter import RowConverter
+    from uplift.extras.paint.optics import Coat
     from uplift.extras.paint.paints import Paints
     from uplift.extras.paint.pigments import Scattering
     from uplift.lookup.cube import Cube
+
+SUMS = ("filter", "light")
+"""Kinds that are no coats."""
+COAT = ("plate", "over", "plot_path")
 
 
 @click.command(
@@ -125,24 +124,7 @@ if TYPE_CHECKING:
 @click.option(
     "--ground", metavar="COLOUR", help="Substrate of the coat. [default: white]"
 )
-@options.number(
-    "--refractive-index",
-    default=1.0,
-    metavar="N",
-    help="Refractive index of the binder, 1.5 for oil; 1 leaves out the surface.",
-)
-@options.number(
-    "--surface-reflectance",
-    metavar="K1",
-    help="Saunderson's reflectance of the surface for light from air. [default: by "
-    "--refractive-index]",
-)
-@options.number(
-    "--internal-reflectance",
-    metavar="K2",
-    help="Saunderson's reflectance of the surface for diffuse light from within. "
-    "[default: by --refractive-index]",
-)
+@surface_options("1 leaves out the surface")
 @click.option(
     "--plate",
     type=click.Choice(("reflected", "transmitted")),
@@ -172,12 +154,6 @@ if TYPE_CHECKING:
 @options.table_or_json
 @options.plot("Plot the ramp from the first ingredient to the last")
 @click.option(
-    "--steps",
-    type=options.Whole(2, 1000),
-    default=9,
-    help="Number of swatches on the ramp.",
-)
-@click.option(
     "--over", metavar="IMAGE", help="Image to paint over (EXR, PNG, JPEG, TIFF)."
 )
 @options.output(help="With --over: image to write, as .exr.")
@@ -201,7 +177,6 @@ def command(
     method: str,
     style: str,
     plot_path: str | None,
-    steps: int,
     over: str | None,
     output: str | None,
     encoding: str,
@@ -209,207 +184,168 @@ def command(
     force: bool,
     **surface: Any,
 ) -> None:
-    from uplift.extras.paint.coats import Medium
-    from uplift.extras.paint.paints import check_unit
-    from uplift.extras.paint.paints_file import read_paints
+    import numpy as np
 
-    _check_coat(kind, plate)
-    paints = None
-    if paints_path is not None:
-        _check_measured(kind)
-        kind = "measured"
-        paints = read_paints(paints_path)
-        check_unit(paints, thickness)
-    if theories:
-        _check_theories(kind)
-    _check_image(output)
-    check_outputs(plot_path, output, inputs=[word.partition(":")[2] for word in words])
-    resolver, further = _prepare_resolver(
-        cube_path,
-        files,
-        input_space,
-        wavelengths,
-        method,
-        paints,
-        has_spectrum=not theories and over is None,
+    from uplift.extras.paint.coats import Dyes
+    from uplift.extras.paint.mixture import (
+        SpectrumResolver,
+        display_mixture,
+        read_entries,
+        read_recipe,
     )
-    recipe = read_recipe(resolver, words, kind)
-    if theories:
-        print_theories(recipe, method, style)
-        return
-    law = _scattering_law(scattering, recipe.cube, further)
-    if paints is not None and not surface.keys() & options.given().keys():
-        stated = paints.surface
-    else:
-        stated = _surface(**surface)
-    medium = Medium(thickness, stated, law, plate is not None)
-    if over is not None and output is not None:
-        looks = {"encoding": encoding, "out_of_gamut": method, "space": input_space}
-        _paint(recipe, medium, scattering, over, output, force=force, **looks)
-        return
-    backing = None
-    if plate != "transmitted":
-        backing = resolver.spectrum(ground or "white")
-    mixture = mix_ramp(recipe, medium, backing, steps, method)
-    if plot_path is not None:
-        plot_ramp(recipe, mixture, plot_path, force=force)
-    if style == "json":
-        print_mixture_json(recipe, mixture, further)
-    else:
-        print_mixture_table(recipe, mixture, further, complete=wavelengths is not None)
+    from uplift.extras.paint.optics import NO_SURFACE
+    from uplift.lookup.cube import load
 
-
-def _check_coat(kind: str, plate: str | None) -> None:
-    from uplift.extras.paint.coats import COATS
-
-    given = options.given().keys()
-    if len(given & {"over", "output"}) == 1:
-        raise click.UsageError("--over IMAGE and --output EXR require each other.")
-    if "ground" in given and (kind not in COATS or "over" in given):
-        raise click.UsageError(
-            "--ground applies to coats of --pigment, --dye or --duntley, without "
-            "--over."
-        )
-    if plate is not None and kind != "dye":
-        raise click.UsageError("--plate applies to --dye.")
-    if plate == "transmitted" and given & {"ground", "over"}:
-        raise click.UsageError(
-            "--plate transmitted does not apply to --ground and --over."
-        )
-    if given >= {"over", "plot_path"}:
-        raise click.UsageError("--plot shows a mixture and does not apply to --over.")
-
-
-def _check_measured(kind: str) -> None:
-    excluded = {
-        "files",
-        "input_space",
-        "scattering",
-        "theories",
-    } & options.given().keys()
-    if kind != "pigment" or excluded:
-        raise click.UsageError(
-            "--paints mixes measured paints, without --dye, --duntley, --filter, "
-            "--additive, --theories, --scattering, --atlas and --input-space."
-        )
-
-
-def _check_theories(kind: str) -> None:
-    excluded = {"thickness", "ground", "plate", "over", "plot_path"}
-    if kind == "duntley" or excluded & options.given().keys():
-        raise click.UsageError(
-            "--theories mixes opaque colours, without --duntley, --thickness, "
-            "--ground, --plate, --over and --plot."
-        )
-
-
-def _check_image(output: str | None) -> None:
+    _check_kind(kind, plate, theories=theories)
     if output is not None and not output.lower().endswith(".exr"):
         raise OutputError(
             "painted images are OpenEXR files",
             path=output,
             hint="give a file name ending in .exr",
         )
-
-
-def _prepare_resolver(
-    cube_path: str | None,
-    files: Sequence[str],
-    input_space: str | None,
-    wavelengths: Array | None,
-    method: str,
-    paints: Paints | None,
-    *,
-    has_spectrum: bool,
-) -> tuple[SpectrumResolver, Array]:
-    """Return the resolver of ingredients, and the wavelengths of the output.
-
-    The resolver's are those of the sensor, for colours, followed by those of the
-    output. Paints have the colours of their own sensor, if the cube has its space and
-    light.
-    """
-    import numpy as np
-
-    from uplift.atlas.atlas import Atlas
-    from uplift.atlas.sources import read_atlas
-    from uplift.lookup.blocks import as_wavelengths
-    from uplift.lookup.cube import load
-
+    paints = None
+    if paints_path is not None:
+        kind = "measured"
+        paints = _read_paints(paints_path, thickness)
+    check_outputs(plot_path, output, inputs=[word.partition(":")[2] for word in words])
     cube = load(cube_path)
-    space = None if input_space is None else find_input_space(input_space)
-    if wavelengths is not None:
-        check_range(wavelengths, cube.wavelengths)
-    further = np.array([])
-    if has_spectrum:
-        further = as_wavelengths(wavelengths, cube.wavelengths)
     sensor = cube.data.sensor
-    if (
-        paints is not None
-        and has_spectrum
-        and _setting(sensor) == _setting(paints.sensor)
-    ):
-        sensor = paints.sensor
-    grid = np.concatenate([sensor.wavelengths, further])
+    further = np.array([])
+    if not theories and over is None:
+        further = _output_wavelengths(wavelengths, cube)
+        # Paints have the colours of their own sensor, if the cube has its space and
+        # light.
+        if paints is not None and _setting(sensor) == _setting(paints.sensor):
+            sensor = paints.sensor
     # The default is for mixtures: an ingredient outside [0, 1] is a mistake, unless the
     # option is given.
-    if "method" not in options.given():
-        method = "error"
-    atlas = read_atlas(*files) if files else Atlas()
-    return SpectrumResolver(cube, atlas, grid, space, method, paints, sensor), further
+    strict = method if "method" in options.given() else "error"
+    resolver = SpectrumResolver(
+        cube,
+        read_entries(files),
+        np.concatenate([sensor.wavelengths, further]),
+        None if input_space is None else find_input_space(input_space),
+        strict,
+    )
+    recipe = read_recipe(resolver, words, kind, paints)
+    if theories:
+        print_theories(recipe, cube, method, style)
+        return
+    usual = NO_SURFACE if paints is None else paints.surface
+    stated = stated_surface(**surface) or usual
+
+    def coat(amounts: Sequence[float] | Array) -> Coat:
+        law = _scattering_law(scattering, cube.data.sensor, further)
+        components = recipe.components(law)
+        if isinstance(components, Dyes) and plate is not None:
+            return components.plate(amounts, thickness, stated)
+        return components.coat(amounts, thickness, stated)
+
+    if over is not None and output is not None:
+        provenance = {
+            "kind": recipe.kind,
+            "of": list(map(list, zip(recipe.parts, recipe.names, strict=True))),
+            "thickness": thickness,
+            "surface": vars(stated),
+            "scattering": scattering,
+        }
+        if plate:
+            provenance["plate"] = True
+        enable_jit_cache()
+        from uplift.extras.paint.overpaint import overpainter
+
+        painter = overpainter(
+            cube,
+            coat(recipe.parts),
+            provenance,
+            encoding=encoding,
+            out_of_gamut=method,
+            space=input_space,
+        )
+        _paint(painter, over, output, force=force)
+        return
+    if kind in SUMS:
+        mixed = recipe.sums()
+    elif plate == "transmitted":
+        mixed = coat(recipe.amounts).layer.transmittance
+    else:
+        mixed = coat(recipe.amounts).over(resolver.spectrum(ground or "white"))
+    mixture = display_mixture(recipe, cube, sensor, mixed, method)
+    if plot_path is not None:
+        plot_ramp(mixture, cube, plot_path, force=force)
+    complete = wavelengths is not None
+    print_mixture(mixture, cube, further, style, complete=complete)
+
+
+def _check_kind(kind: str, plate: str | None, *, theories: bool) -> None:
+    """Raise for options that do not apply to a kind of mixture."""
+    given = options.given().keys()
+    if len(given & {"over", "output"}) == 1:
+        raise click.UsageError("--over IMAGE and --output EXR require each other.")
+    if given >= {"over", "plot_path"}:
+        raise click.UsageError("--plot shows a mixture and does not apply to --over.")
+    if plate is not None and kind != "dye":
+        raise click.UsageError("--plate applies to --dye.")
+    if plate == "transmitted" and given & {"ground", "over"}:
+        raise click.UsageError(
+            "--plate transmitted does not apply to --ground and --over."
+        )
+    if "ground" in given and (kind in SUMS or "over" in given):
+        raise click.UsageError(
+            "--ground applies to coats of --pigment, --dye or --duntley, without "
+            "--over."
+        )
+    if kind in SUMS and given & {"over", "thickness", *SURFACE}:
+        raise OptionError(
+            f"{kind}s must not have a thickness, a surface or a ground",
+            hint="leave them out; parts of filters are their thickness",
+        )
+    if "paints_path" in given and (
+        kind != "pigment" or given & {"files", "input_space", "scattering", "theories"}
+    ):
+        raise click.UsageError(
+            "--paints mixes measured paints, without --dye, --duntley, --filter, "
+            "--additive, --theories, --scattering, --atlas and --input-space."
+        )
+    if theories and (kind == "duntley" or given & {"thickness", "ground", *COAT}):
+        raise click.UsageError(
+            "--theories mixes opaque colours, without --duntley, --thickness, "
+            "--ground, --plate, --over and --plot."
+        )
+
+
+def _read_paints(path: str, thickness: float | None) -> Paints:
+    from uplift.extras.paint.paints import check_unit
+    from uplift.extras.paint.paints_file import read_paints
+
+    paints = read_paints(path)
+    check_unit(paints, thickness)
+    return paints
+
+
+def _output_wavelengths(wavelengths: Array | None, cube: Cube) -> Array:
+    from uplift.lookup.blocks import as_wavelengths
+
+    if wavelengths is not None:
+        check_range(wavelengths, cube.wavelengths)
+    return as_wavelengths(wavelengths, cube.wavelengths)
 
 
 def _setting(sensor: Sensor) -> tuple[str, str, str]:
     return sensor.space, sensor.illuminant, sensor.observer
 
 
-def _scattering_law(name: str, cube: Cube, further: Array) -> Scattering:
+def _scattering_law(name: str, sensor: Sensor, further: Array) -> Scattering:
     from uplift.extras.paint.pigments import CONSTANT, SQUARE_ROOT, dispersive
 
     laws: dict[str, Scattering] = {"root": SQUARE_ROOT, "constant": CONSTANT}
-    return laws.get(name) or dispersive(cube.data.sensor, further)
+    return laws.get(name) or dispersive(sensor, further)
 
 
-def _surface(
-    refractive_index: float,
-    surface_reflectance: float | None,
-    internal_reflectance: float | None,
-) -> Surface:
-    from uplift.extras.paint.optics import Surface
-
-    of_index = Surface.of_index(refractive_index)
-    return Surface(
-        of_index.outside if surface_reflectance is None else surface_reflectance,
-        of_index.inside if internal_reflectance is None else internal_reflectance,
-    )
-
-
-def _paint(
-    recipe: Recipe,
-    medium: Medium,
-    scattering: str,
-    over: str,
-    output: str,
-    *,
-    force: bool,
-    **looks: Any,
-) -> None:
-    """Paint the coat over an image."""
-    enable_jit_cache()
-    from uplift.extras.paint.coats import make_coat
-    from uplift.extras.paint.overpaint import overpainter
+def _paint(painter: RowConverter, over: str, output: str, *, force: bool) -> None:
+    """Paint a coat over an image."""
     from uplift.extras.texture.conversion import convert
 
-    provenance = {
-        "kind": recipe.kind,
-        "of": list(map(list, zip(recipe.parts, recipe.names, strict=True))),
-        "thickness": medium.thickness,
-        "surface": asdict(medium.surface),
-        "scattering": scattering,
-    }
-    if medium.plate:
-        provenance["plate"] = True
-    coat = make_coat(recipe.kind, recipe.ingredients, recipe.parts, medium)
-    painter = overpainter(recipe.cube, coat, provenance, **looks)
     with progress_bar("rows") as progress:
         painted = convert(painter, over, output, force=force, progress=progress)
     warn(painted.warnings)

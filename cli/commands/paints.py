@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -14,21 +14,21 @@ from ..output.console import paragraph, print_json, say
 from ..output.progress import progress_bar
 from ..outputs import check_outputs
 from ..paints import (
-    fit_fields,
-    match_fields,
+    hex_codes,
     paint_fields,
     plot_recipes,
     print_fit,
+    print_fit_json,
     print_paints,
     print_recipes,
-    read_target,
+    recipe_rows,
 )
 from ..startup import enable_jit_cache
+from ..surfaces import stated_surface, surface_options
 from .mix import command as mix
 
 if TYPE_CHECKING:
     from uplift.colorimetry.illuminants import Illuminant
-    from uplift.extras.paint.optics import Surface
 
 paints_option = click.option(
     "--paints",
@@ -93,39 +93,28 @@ command.add_command(mix)
     type=click.Path(),
     help="Table of the parts, by the names of samples. [default: SAMPLES]",
 )
-@options.number(
-    "--refractive-index",
-    metavar="N",
-    help="Refractive index of the binder; 1 leaves out the surface. [default: the "
-    "surface is fitted]",
-)
-@options.number(
-    "--surface-reflectance",
-    metavar="K1",
-    help="Saunderson's reflectance of the surface for light from air.",
-)
-@options.number(
-    "--internal-reflectance",
-    metavar="K2",
-    help="Saunderson's reflectance of the surface for light from within.",
-)
+@surface_options("1 leaves out the surface. [default: the surface is fitted]")
 @options.output(help="File to write.", default="paints.toml")
 @options.table_or_json
 @options.force
 def fit(
     samples_path: str,
     recipes: str | None,
-    refractive_index: float | None,
-    surface_reflectance: float | None,
-    internal_reflectance: float | None,
     output: str,
     style: str,
     force: bool,
+    **stated: Any,
 ) -> None:
     enable_jit_cache()
     from uplift.extras import paint
 
-    surface = _surface(refractive_index, surface_reflectance, internal_reflectance)
+    if len(stated.keys() & options.given().keys()) == 1 and (
+        stated["refractive_index"] is None
+    ):
+        raise click.UsageError(
+            "--surface-reflectance and --internal-reflectance require each other."
+        )
+    surface = stated_surface(**stated)
     check_outputs(output)
     samples = paint.read_paint_samples(samples_path, recipes)
     with progress_bar("fitting paints", quiet=style == "json") as progress:
@@ -133,32 +122,12 @@ def fit(
         advice = paint.advise_samples(fitted)
     paint.write_paints(fitted.paints, output, force=force)
     if style == "json":
-        print_json({"output": output, **fit_fields(fitted, advice)})
+        print_fit_json(fitted, advice, output)
         return
     print_fit(fitted, advice)
     for note in samples.notes:
         paragraph(f"{samples_path if recipes is None else recipes}: {note}")
     say(f"{output}: {pluralise(len(fitted.paints), 'paint')}", err=True)
-
-
-def _surface(
-    index: float | None, outside: float | None, inside: float | None
-) -> Surface | None:
-    """Return the surface that options state, None if it is to be fitted."""
-    from uplift.extras.paint.optics import Surface
-
-    given = (index, outside, inside)
-    if all(value is None for value in given):
-        return None
-    if index is None and (outside is None or inside is None):
-        raise click.UsageError(
-            "--surface-reflectance and --internal-reflectance require each other."
-        )
-    of_index = Surface.of_index(1.0 if index is None else index)
-    return Surface(
-        of_index.outside if outside is None else outside,
-        of_index.inside if inside is None else inside,
-    )
 
 
 @command.command(
@@ -202,13 +171,6 @@ def _surface(
     default=100,
     help="Most parts of a recipe in all.",
 )
-@click.option(
-    "--alternatives",
-    metavar="N",
-    type=options.Whole(1, 100),
-    default=5,
-    help="Number of recipes.",
-)
 @options.light("Light under which the colours should agree", "D65")
 @options.number(
     "--thickness",
@@ -230,7 +192,6 @@ def match(
     spectrum_path: str | None,
     count: int,
     steps: int,
-    alternatives: int,
     lights: Sequence[Illuminant],
     thickness: float | None,
     ground: str | None,
@@ -241,6 +202,12 @@ def match(
     force: bool,
 ) -> None:
     from uplift.extras import paint
+    from uplift.extras.paint.mixture import (
+        SpectrumResolver,
+        read_entries,
+        sample_entry,
+    )
+    from uplift.lookup.cube import load
 
     if (colour is None) == (spectrum_path is None):
         raise click.UsageError("Give one of COLOUR and --spectrum.")
@@ -248,18 +215,28 @@ def match(
     paints = paint.read_paints(paints_path)
     if names:
         paints = paints.select(names)
-    target = read_target(
-        paints, colour, spectrum_path, cube_path, files, lights, thickness, ground
-    )
-    found = paint.match(
-        target, paints, count=count, steps=steps, alternatives=alternatives
-    )
-    if plot_path is not None:
-        plot_recipes(target, found, plot_path, force=force)
-    if style == "json":
-        print_json(match_fields(target, paints, found))
+    nm = paints.wavelengths
+    resolver = SpectrumResolver(load(cube_path), read_entries(files), nm)
+    if spectrum_path is None:
+        reflectance = resolver.spectrum(str(colour))
     else:
-        print_recipes(target, paints, found, count)
+        reflectance = sample_entry(read_entries([spectrum_path])[0], nm)
+    target = paint.PaintTarget(
+        reflectance,
+        tuple(map(paints.light, lights or ("D65",))),
+        thickness,
+        1.0 if ground is None else resolver.spectrum(ground),
+    )
+    recipes = paint.match(target, paints, count=count, steps=steps)
+    if plot_path is not None:
+        plot_recipes(target, recipes, plot_path, force=force)
+    (code,) = hex_codes(paints, reflectance[None])
+    rows = recipe_rows(target, paints, recipes)
+    if style == "json":
+        names = [light.name for light in target.lights]
+        print_json({"colour": code, "lights": names, "recipes": rows})
+    else:
+        print_recipes(rows, recipes, code, min(count, len(paints)))
 
 
 @command.command(

@@ -9,8 +9,10 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from uplift.extras.images.sequences import expand_patterns
+
 from .. import options
-from ..inputs import expand_patterns, read_atlases
+from ..inputs import read_atlases
 from ..output.console import paragraph, say
 from ..output.diagnostics import warn
 from ..output.passes import passes_count, passes_fields, passes_tables

@@ -11,13 +11,13 @@ import click
 
 from uplift.common.errors import OptionError
 from uplift.common.text import pluralise
+from uplift.extras.images.sequences import pair_frames
 
 from .. import options
 from ..output.console import emit, paragraph, print_json
 from ..output.diagnostics import warn
 from ..output.progress import progress_bar
 from ..outputs import check_outputs
-from ..sequences import pair_frames
 
 if TYPE_CHECKING:
     from uplift.colorimetry.illuminants import Illuminant

@@ -5,10 +5,20 @@ from pathlib import Path
 import click
 
 from .. import options
-from ..output.console import json_text, make_table, paragraph, print_json, say, show
+from ..output.console import json_text, paragraph, print_json, say
 from ..output.progress import progress_bar
+from ..output.table import Format, Table
 from ..outputs import check_outputs
 from ..startup import enable_jit_cache
+
+FRONT = {
+    "chosen": "",
+    "error": "ΔE00",
+    "memory": "memory",
+    "time": "time",
+    "samples": "samples",
+    "name": "choice",
+}
 
 
 @click.command(
@@ -54,6 +64,7 @@ def command(
 ) -> None:
     enable_jit_cache()
     from uplift.common.files import write_text
+    from uplift.extras.pages.format import format_error, format_size
     from uplift.extras.scene.plan import summary
     from uplift.extras.scene.plan.candidates import QUICK, SearchGrid
     from uplift.extras.scene.plan.files import SUFFIX, read_scene_file
@@ -75,20 +86,13 @@ def command(
         for line in fields["lines"]:
             say(f"  {line}")
         say()
-        worst = result.confirmed.worst
         paragraph(f"{result.scene.path.name}: {result.chosen.name}")
-        paragraph(
-            f"{summary.verdict(result)} ({worst.group} under {worst.light}). "
-            f"{' '.join(summary.notes(result))}"
-        )
+        paragraph(f"{summary.verdict(result)}. {' '.join(summary.notes(result))}")
         say()
-        table = make_table(("",), summary.HEADINGS[:4])
-        for heading in summary.HEADINGS[4:]:
-            table.add_column(heading)
-        for candidate in summary.front_rows(result):
-            mark = "→" if candidate is result.chosen else ""
-            table.add_row(mark, *summary.front_row(candidate))
-        show(table)
-        say()
-        paragraph(summary.describe_error(result))
+        formats: dict[str, Format] = {
+            "error": lambda error: format_error(error["quantile"]),
+            "memory": format_size,
+            "time": ",.0f",
+        }
+        Table(summary.front_rows(result), FRONT, formats=formats).print_text()
     say(str(path), err=True)

@@ -3,31 +3,32 @@
 from __future__ import annotations
 
 import contextlib
-import glob
 import os
 import time
 from collections.abc import Sequence
-from dataclasses import fields, replace
 from itertools import chain
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
-from uplift.common.errors import OptionError, OutputError, UpliftError
+from uplift.common.errors import OptionError, UpliftError
 from uplift.common.progress import Progress
 from uplift.common.text import pluralise
-from uplift.extras.files.outputs import check_outputs
+from uplift.extras.images.sequences import (
+    expand_patterns,
+    is_folder,
+    pair_frames,
+    texture_paths,
+)
 
 from .. import also as further
 from .. import options
-from ..inputs import UDIM, check_range, expand_patterns
+from ..inputs import check_range
 from ..option_types import INPUTS
 from ..output.console import say
 from ..output.diagnostics import CommandFailure, warn
 from ..output.progress import progress_bar
-from ..outputs import is_folder
-from ..sequences import matched, pair_frames
 from ..startup import enable_jit_cache
 
 if TYPE_CHECKING:
@@ -211,55 +212,58 @@ def command(
     kind: str,
     wavelengths: Array | None,
     also: Sequence[further.Further],
+    passes: str | None,
     exposures: Sequence[float],
-    noise: tuple[float, float] | None,
-    balance: str,
     spaces: Sequence[str],
     cameras: Sequence[str],
+    noise: tuple[float, float] | None,
+    balance: str,
     corners: tuple[float, ...] | None,
     chart_atlas: str,
-    passes: str | None,
     **settings: Any,
 ) -> None:
-    from uplift.extras import texture
-    from uplift.lookup.cube import find_file, load
+    from uplift.extras.texture.encodings import PIXEL_ENCODINGS, Spectrum
+    from uplift.extras.texture.photographs import (
+        ChartInPicture,
+        FurtherPicture,
+        FurtherPictures,
+    )
+    from uplift.extras.texture.sequence import load_cube
+    from uplift.lookup.cube import find_file
 
     if passes is not None:
         options.exclude("--passes", "kind", "mask", "errors", "wavelengths", "also")
-    count = len(also)
-    pictures = tuple(
-        texture.FurtherPicture(photograph.light, space, camera, exposure)
-        for photograph, space, camera, exposure in zip(
-            also,
-            further.for_each(spaces, count, "--also-space"),
-            further.for_each(cameras, count, "--also-camera"),
-            further.for_each(exposures, count, "--exposure"),
-            strict=True,
-        )
-    )
-    if pictures:
-        chart = None
-        if corners is not None:
-            chart = texture.ChartInPicture(corners, chart_atlas)
-        settings["also"] = texture.FurtherPictures(pictures, balance, noise, chart)
-        settings["further"] = [photograph.text for photograph in also]
-    encode = texture.PIXEL_ENCODINGS[kind]
-    if encode is not texture.Spectrum and wavelengths is not None:
-        hint = "leave out --wavelengths, or use --representation spectrum"
-        raise OptionError(f"{kind} have no wavelengths", hint=hint)
     if len(cube_paths) > 1 and mask is None:
         raise click.UsageError(
             "Several cubes need --mask, an image of which cube a pixel belongs to."
         )
     cubes = tuple(os.path.abspath(find_file(path)) for path in cube_paths) or (None,)
-    pixels = encode()
+    encoding = PIXEL_ENCODINGS[kind]()
     if wavelengths is not None:
+        if not isinstance(encoding, Spectrum):
+            hint = "leave out --wavelengths, or use --representation spectrum"
+            raise OptionError(f"{kind} have no wavelengths", hint=hint)
         for path in cubes:
-            check_range(wavelengths, load(path).wavelengths)
-        pixels = texture.Spectrum(as_tuple(wavelengths))
-    if mask is not None:
-        mask = os.path.abspath(mask)
-    convert(cubes, pixels, mask=mask, passes=passes, **settings)
+            check_range(wavelengths, load_cube(path).wavelengths)
+        encoding = Spectrum(as_tuple(wavelengths))
+    count = len(also)
+    columns = (
+        [photograph.light for photograph in also],
+        further.for_each(spaces, count, "--also-space"),
+        further.for_each(cameras, count, "--also-camera"),
+        further.for_each(exposures, count, "--exposure"),
+    )
+    pictures = tuple(FurtherPicture(*row) for row in zip(*columns, strict=True))
+    chart = None if corners is None else ChartInPicture(corners, chart_atlas)
+    convert(
+        cubes,
+        encoding,
+        mask=None if mask is None else os.path.abspath(mask),
+        also=FurtherPictures(pictures, balance, noise, chart) if pictures else None,
+        further=[photograph.text for photograph in also],
+        passes=passes,
+        **settings,
+    )
 
 
 def convert(
@@ -282,47 +286,48 @@ def convert(
     """
     enable_jit_cache()
     from uplift.extras import texture
+    from uplift.extras.scene.passes.settings import jobs_of_passes
     from uplift.extras.texture.sequence import converter_for
 
+    begin = time.perf_counter()
+    frames = pair_frames([sources, *([text] for text in further)])
+    images = [image for image, *_ in frames]
     named = target if passes is None else _with_suffix(sources, target)
-    pairs = pair_frames([sources, *([text] for text in further)])
-    rows = [map(Path.absolute, map(Path, pictures)) for pictures in pairs]
-    images = [image for image, *_ in pairs]
-    targets = _texture_paths(sources, images, named)
-    inputs = click.get_current_context().meta.get(INPUTS, ())
     cores = os.cpu_count() or 1
-    count = processes or min(cores, len(pairs))
+    count = processes or min(cores, len(frames))
     settings = texture.TextureSettings(
         cubes, pixel_encoding, threads=max(cores // count, 1), **given
     )
-    jobs = [
-        texture.Job(settings, source, path.absolute(), force, resume, tuple(more))
-        for (source, *more), path in zip(rows, targets, strict=True)
-    ]
+    jobs = []
+    for pictures, path in zip(
+        frames, texture_paths(sources, images, named), strict=True
+    ):
+        source, *more = map(Path.absolute, map(Path, pictures))
+        job = texture.Job(settings, source, path.absolute(), force, resume, tuple(more))
+        jobs.append(job)
+    inputs = [*click.get_current_context().meta.get(INPUTS, ())]
     if passes is not None:
-        inputs = [*inputs, passes]
-        jobs = _jobs_of_passes(jobs, passes)
-    existing = [job.target for job in jobs if job.target.exists()]
-    check_outputs(existing, inputs=inputs, force=True)
-    pending = texture.pending(jobs)
+        inputs.append(passes)
+        jobs = jobs_of_passes(jobs, os.path.abspath(passes))
+    pending = texture.pending(jobs, inputs=inputs)
     # reports invalid options once, not once per image
     converter_for(jobs[0].settings)
-    begin = time.perf_counter()
-    outcomes = _run_jobs(
-        pending,
-        quiet,
-        is_single=scheduler is None and len(jobs) == 1,
-        processes=count,
-        scheduler=scheduler,
-    )
+    if scheduler is None and len(jobs) == 1:
+        outcomes = _run_single(pending, quiet)
+    else:
+        outcomes = _run_all(pending, quiet, processes=count, scheduler=scheduler)
     converted = [item for item in outcomes if isinstance(item, texture.Conversion)]
     failures = [item.error for item in outcomes if isinstance(item, texture.Failure)]
     for conversion in converted:
         warn(conversion.warnings)
     if not quiet and len(failures) < len(jobs):
         skipped = len(jobs) - len(converted) - len(failures)
-        is_spectrum = passes is None and isinstance(pixel_encoding, texture.Spectrum)
-        _print_summary(target, converted, skipped, begin, is_spectrum)
+        seconds = time.perf_counter() - begin
+        size = _print_summary(target, converted, skipped, seconds)
+        is_spectrum = isinstance(pixel_encoding, texture.Spectrum)
+        if size > LARGE and passes is None and is_spectrum:
+            hint = "--representation moments --depth half takes a fraction of the size"
+            say(f"hint: {hint}", err=True)
     _raise_first(failures)
 
 
@@ -336,113 +341,20 @@ def _with_suffix(sources: Sequence[str], target: str) -> str:
     return f"{target}.exr"
 
 
-def _jobs_of_passes(jobs: Sequence[Job], path: str) -> list[Job]:
-    """Return a job for each image and pass, the images of a pass in a row."""
-    from uplift.extras.scene.passes.file import read_passes
-    from uplift.extras.scene.passes.settings import PassSettings
-    from uplift.extras.scene.passes.textures import pass_name
-
-    path = os.path.abspath(path)
-    count = read_passes(path).count
-    shared = {
-        setting.name: getattr(jobs[0].settings, setting.name)
-        for setting in fields(jobs[0].settings)
-    }
-    result = []
-    for number in range(1, count + 1):
-        settings = PassSettings(**shared, passes=path, number=number)
-        for job in jobs:
-            target = job.target.with_name(pass_name(job.target.stem, number))
-            result.append(replace(job, settings=settings, target=target))
-    return result
-
-
-def _raise_first(errors: Sequence[UpliftError]) -> None:
-    """Raise the first of the errors of images, after the others are printed."""
-    for error in errors[1:]:
-        CommandFailure(error).show()
-    if errors:
-        raise errors[0]
-
-
-def _print_summary(
-    target: str,
-    converted: Sequence[Conversion],
-    skipped: int,
-    begin: float,
-    is_spectrum: bool,
-) -> None:
-    pixels = sum(conversion.counts.pixels for conversion in converted)
-    size = sum(conversion.target.stat().st_size for conversion in converted) / 1e6
-    spaces = chain.from_iterable(conversion.spaces for conversion in converted)
-    read_as = ", ".join(dict.fromkeys(spaces))
-    facts = [pluralise(len(converted), "texture")]
-    if skipped:
-        facts.append(f"{skipped} skipped")
-    facts.append(pluralise(pixels, "pixel"))
-    facts.append(f"{size:.1f} MB")
-    facts.append(f"{time.perf_counter() - begin:.1f} s")
-    if read_as:
-        facts.append(f"read as {read_as}")
-    say(f"{target}: {', '.join(facts)}")
-    for conversion in converted:
-        name = f"{conversion.source.name}: " if len(converted) > 1 else ""
-        for fact in conversion.facts:
-            say(f"{name}{fact}")
-    if size > LARGE and is_spectrum:
-        hint = "--representation moments --depth half takes a fraction of the size"
-        say(f"hint: {hint}", err=True)
-
-
-def _texture_paths(
-    sources: Sequence[str], images: Sequence[str], target: str
-) -> list[Path]:
-    """Return the textures of images. Those of several, and of patterns, go into the
-    folder ``target``.
-
-    Raises `OutputError` for a file in place of the folder.
-    """
-    if UDIM in target:
-        return _tiles(sources, images, target)
-    folder = Path(target)
-    is_single = [*sources] == images and len(images) == 1
-    if is_single and folder.suffix and not is_folder(target):
-        if folder.suffix.lower() != ".exr":
-            hint = "give a file name ending in .exr, or a folder"
-            raise OutputError("textures are OpenEXR files", path=target, hint=hint)
-        return [folder]
-    if folder.suffix.lower() == ".exr" and not folder.is_dir():
-        problem = f"is not a folder, but there are {len(images):,} images"
-        raise OutputError(problem, path=target, hint="give a folder for the textures")
-    return [folder / f"{Path(path).stem}.exr" for path in images]
-
-
-def _tiles(sources: Sequence[str], images: Sequence[str], target: str) -> list[Path]:
-    """Return the textures of the tiles of one UDIM pattern, whose names have the same
-    numbers.
-    """
-    is_plain = len(sources) == 1 and not glob.has_magic(sources[0])
-    if not is_plain or sources[0].count(UDIM) != 1 or target.count(UDIM) != 1:
-        hint = f"write for example 'wood.{UDIM}.exr' -o 'uplifted.{UDIM}.exr'"
-        raise OutputError(
-            f"{UDIM} in the output needs one input with {UDIM}", path=target, hint=hint
-        )
-    tiles = [matched(sources[0], image) for image in images]
-    return [Path(target.replace(UDIM, tile)) for (tile,) in tiles]
-
-
 def as_tuple(wavelengths: Array | None) -> tuple[float, ...] | None:
     return None if wavelengths is None else tuple(wavelengths.tolist())
 
 
-def _run_jobs(
-    jobs: Sequence[Job], quiet: bool, *, is_single: bool, **workers: Any
-) -> list[Outcome]:
-    from uplift.extras.texture.sequence import convert_all, run
+def _run_single(jobs: Sequence[Job], quiet: bool) -> list[Outcome]:
+    from uplift.extras.texture.sequence import run
 
-    if is_single:
-        with progress_bar("rows", quiet=quiet) as progress:
-            return [run(job, progress) for job in jobs]
+    with progress_bar("rows", quiet=quiet) as progress:
+        return [run(job, progress) for job in jobs]
+
+
+def _run_all(jobs: Sequence[Job], quiet: bool, **workers: Any) -> list[Outcome]:
+    from uplift.extras.texture.sequence import convert_all
+
     outcomes = []
     try:
         with (
@@ -459,3 +371,35 @@ def _run_jobs(
         )
         raise
     return outcomes
+
+
+def _print_summary(
+    target: str, converted: Sequence[Conversion], skipped: int, seconds: float
+) -> float:
+    """Print what was converted, and return its size in megabytes."""
+    pixels = sum(conversion.counts.pixels for conversion in converted)
+    size = sum(conversion.target.stat().st_size for conversion in converted) / 1e6
+    spaces = chain.from_iterable(conversion.spaces for conversion in converted)
+    read_as = ", ".join(dict.fromkeys(spaces))
+    facts = [
+        pluralise(len(converted), "texture"),
+        f"{skipped} skipped" if skipped else "",
+        pluralise(pixels, "pixel"),
+        f"{size:.1f} MB",
+        f"{seconds:.1f} s",
+        f"read as {read_as}" if read_as else "",
+    ]
+    say(f"{target}: {', '.join(filter(None, facts))}")
+    for conversion in converted:
+        name = f"{conversion.source.name}: " if len(converted) > 1 else ""
+        for fact in conversion.facts:
+            say(f"{name}{fact}")
+    return size
+
+
+def _raise_first(errors: Sequence[UpliftError]) -> None:
+    """Raise the first of the errors of images, after the others are printed."""
+    for error in errors[1:]:
+        CommandFailure(error).show()
+    if errors:
+        raise errors[0]

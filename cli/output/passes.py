@@ -58,17 +58,16 @@ def passes_tables(
     """
     numbers = [("centre, nm", list(passes.bands.centres))]
     numbers += [(light.name, light.numbers.tolist()) for light in passes.lights]
-    rows = []
-    for name, values in (*numbers, *others.items()):
-        for number, triple in enumerate(_triples(values), 1):
-            rows.append({"pass": number, "of": name, CHANNELS: triple})
+    numbers += others.items()
+    rows = [
+        {"numbers of": name} | row for name, values in numbers for row in _rows(values)
+    ]
     bands = Table(
         sorted(rows, key=lambda row: row["pass"]),
-        {"pass": "pass", "of": "numbers of", CHANNELS: "red, green, blue"},
+        _headings("pass", "numbers of", *CHANNELS),
         title=f"bands of width {passes.bands.width:g} nm, and numbers of lights",
         digits=".5g",
     )
-    held_out = pluralise(passes.origin.get("held-out", 0), "material")
     errors = []
     for light in passes.lights:
         means = light.errors.mean(), light.own_errors.mean()
@@ -76,19 +75,23 @@ def passes_tables(
         errors.append(dict(zip(ERRORS, cells, strict=True)))
     held_out = pluralise(passes.origin.get("held-out", 0), "material")
     title = f"mean ΔE00 on {held_out} that the choice did not use"
-    headings = dict(zip(ERRORS, ERRORS, strict=True))
-    return bands, Table(errors, headings, title=title, digits=".2f")
+    return bands, Table(errors, _headings(*ERRORS), title=title, digits=".2f")
+
+
+def _headings(*names: str) -> dict[str, str]:
+    return dict(zip(names, names, strict=True))
 
 
 def print_numbers(rows: Iterable[tuple[list[float], list[float]]], style: str) -> None:
     """Print the numbers (K,) of passes of colours, three for each pass."""
     if style == "json":
-        print_json([{"rgb": rgb, "passes": _triples(numbers)} for rgb, numbers in rows])
+        print_json([{"rgb": rgb, "passes": _triples(values)} for rgb, values in rows])
         return
     table = Table(
-        _pass_rows(rows),
-        {"rgb": "linear RGB", "pass": "pass", CHANNELS: "numbers"},
-        formats={"rgb": ".4f", CHANNELS: ".6g"},
+        ({"rgb": rgb} | row for rgb, values in rows for row in _rows(values)),
+        {"rgb": "linear RGB", **_headings("pass", *CHANNELS)},
+        digits=".6g",
+        formats={"rgb": ".4f"},
     )
     print_result(style, None, table)
 
@@ -97,9 +100,7 @@ def _triples(numbers: list[float]) -> list[list[float]]:
     return [numbers[first : first + 3] for first in range(0, len(numbers), 3)]
 
 
-def _pass_rows(
-    rows: Iterable[tuple[list[float], list[float]]],
-) -> Iterator[dict[str, Any]]:
-    for rgb, numbers in rows:
-        for number, triple in enumerate(_triples(numbers), 1):
-            yield {"rgb": rgb, "pass": number, CHANNELS: triple}
+def _rows(numbers: list[float]) -> Iterator[dict[str, Any]]:
+    """Yield a row of the numbers (K,) for each pass."""
+    for number, triple in enumerate(_triples(numbers), 1):
+        yield {"pass": number, **dict(zip(CHANNELS, triple, strict=True))}

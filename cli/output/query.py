@@ -19,7 +19,7 @@ from .answers import (
     print_spectrum,
     without_rounding,
 )
-from .console import has_colours, print_csv, print_csv_text, print_lines, say
+from .console import EscapedOutput, emit, has_colours, print_csv, say
 from .table import print_json_rows
 
 if TYPE_CHECKING:
@@ -43,12 +43,15 @@ LARGEST = 1e30
 def answer_rows(answers: Answers, block: QueryBlock) -> list[dict[str, Any]]:
     """Return the answers of a block as plain values for JSON."""
     from uplift.extras.colour.coordinates import coordinates
+    from uplift.extras.colour.srgb import hex_codes as srgb_codes
 
     count = len(block)
     lights = {}
-    for light, (rgb, codes) in answers.light_colours(block).items():
-        xyz = as_lists(block.light_xyz[light])
-        lights[light] = _rows({"srgb": as_lists(rgb), "hex": codes, "xyz": xyz}, count)
+    for lit, display in zip(answers.lights, answers.displays, strict=True):
+        xyz = block.light_xyz[lit.name]
+        rgb = (display.xyz_to_rgb @ xyz[..., None])[..., 0]
+        shown = {"srgb": as_lists(rgb), "hex": srgb_codes(rgb), "xyz": as_lists(xyz)}
+        lights[lit.name] = _rows(shown, count)
     errors = {}
     for light, values in block.light_errors.items():
         if not isnan(values[0, 0]):
@@ -133,7 +136,8 @@ def _print_csv(answers: Answers, blocks: Iterable[QueryBlock]) -> None:
     for light in known:
         names += [f"standard_error_{light}", f"error_bound_{light}"]
     names += [f"hex_{light}" for light in lights]
-    print_csv([*names, "entry", *map("{:g}".format, wavelengths)], [])
+    print_csv([[*names, "entry", *map("{:g}".format, wavelengths)]])
+    output = EscapedOutput()
     for block in blocks:
         spectra = number_rows(without_rounding(block.reflectance))
         for row, spectrum in zip(answer_rows(answers, block), spectra, strict=True):
@@ -144,7 +148,7 @@ def _print_csv(answers: Answers, blocks: Iterable[QueryBlock]) -> None:
                 cells += [values.get(light) for values in errors]
             cells += [lit["hex"] for lit in row["lights"].values()]
             text = csv_text([*cells, row["entry"]], [])
-            print_csv_text(f"{text[:-1]},{spectrum}\n")
+            output.write(f"{text[:-1]},{spectrum}\n")
 
 
 def _print_lines(answers: Answers, blocks: Iterable[QueryBlock]) -> None:
@@ -161,7 +165,8 @@ def _print_lines(answers: Answers, blocks: Iterable[QueryBlock]) -> None:
                 f"{indent}hex      {'linear RGB':<17}  {'ΔE00':<7}  {middle}  atlas "
                 "entry"
             )
-        print_lines(_lines(cube, block, rows, names))
+        for line in _lines(cube, block, rows, names):
+            emit(line)
 
 
 def _lines(

@@ -18,9 +18,9 @@ from uplift.atlas.sources import read_atlas
 from uplift.colorimetry import observer
 from uplift.colorimetry.delta_e import delta_e_2000, lab
 from uplift.common.errors import OptionError
+from uplift.extras.scene.passes.bands import PRESETS
 from uplift.extras.scene.passes.choice import fit_bands
 from uplift.extras.scene.passes.materials import library_materials
-from uplift.extras.scene.passes.presets import PRESETS
 
 SIZE = 64
 LIGHTS = ("D65", "FL2", "HP1")

@@ -145,10 +145,10 @@ def warning_lines(result: Result) -> list[str]:
 @pytest.fixture(scope="session")
 def passes_text() -> str:
     """The file of two passes."""
+    from uplift.extras.scene.passes.bands import PRESETS
     from uplift.extras.scene.passes.choice import fit_bands
     from uplift.extras.scene.passes.file import to_toml
     from uplift.extras.scene.passes.materials import library_materials
-    from uplift.extras.scene.passes.presets import PRESETS
 
     bands = PRESETS[2]
     return to_toml(fit_bands(bands, library_materials(), ("D65", "A")))

@@ -71,7 +71,7 @@ def test_every_light_may_be_a_file(run, refuse, home, files, line):
         assert refuse(line.replace("{}", name)).code == code
     assert set(os.listdir(home)) == files
     words = line.replace("{}", "lamp.spd").split()
-    is_json = words[0] not in WITHOUT_JSON
+    is_json = not line.removeprefix("lab ").startswith(WITHOUT_JSON)
     result = run(*words, *["--format", "json"] * is_json)
     assert not is_json or '"lamp"' in result.stdout
 

@@ -445,7 +445,6 @@ def test_progress_off_terminals_is_a_line_now_and_then(monkeypatch, capsys):
         ({"title": "rows"}, ["rows: 3 of 8, round 2"]),
         ({}, ["fitting: 3 of 8, round 2"]),
         ({"quiet": True}, []),
-        ({"verbose": True}, ["fitting: 3 of 8, round 2"] * 4),
     ):
         with progress_bar(**options) as report:
             for _ in range(4):

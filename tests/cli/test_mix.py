@@ -64,7 +64,7 @@ def test_lights_and_filters(run, ask):
 
 
 def test_swatches_are_plotted(run, refuse, home):
-    run("mix", BLUE, YELLOW, "--plot", "green.png", "--steps", 5)
+    run("mix", BLUE, YELLOW, "--plot", "green.png")
     picture = matplotlib.image.imread("green.png")
     last = (255 * picture[-40, -30, :3]).round().astype(int).tolist()
     assert last == [0xFF, 0xD2, 0x00]

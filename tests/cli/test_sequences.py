@@ -1,10 +1,10 @@
 """Which pictures of several sequences are of one frame or tile."""
 
 import pytest
-from uplift_cli.sequences import pair_frames
 
 from tests.helpers import raises
 from uplift.common.errors import TextureError
+from uplift.extras.images.sequences import pair_frames
 
 ROWS = """
 a.*.1.x > b.*.2.x | a.2.1.x a.10.1.x b.02.2.x b.10.2.x | a.10.1.x b.10.2.x

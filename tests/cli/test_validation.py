@@ -33,7 +33,7 @@ COMPUTES = {
     "paints match": "uplift.extras.paint.match",
     "palette": "uplift.extras.papers.palette.design",
     "passes choose": "uplift.extras.scene.passes.choice.draw_paths",
-    "plan": "uplift.extras.scene.plan.space.sample_colours",
+    "plan": "uplift.extras.scene.plan.trial.sample_colours",
     "relight": "uplift.pipeline.entries.fit_constraints",
     "report": "uplift.extras.report.assessment.assess",
     "study held-out": "uplift.pipeline.entries.fit_constraints",
@@ -226,7 +226,6 @@ option study held-out --atlas macbeth --coefficients 99
 option study held-out --atlas macbeth --dim 1
 atlas study moments --atlas macbeth.txt --atlas copy/macbeth.txt
 output study moments --atlas macbeth -o mine
-option study moments --atlas macbeth --max-moments 99 -o out
 file-not-found study moments --atlas none.csv -o out
 option study sensitivity {} -o out --method none
 file-not-found study sensitivity none.uplift -o out
@@ -303,7 +302,7 @@ wavelengths --count 4 --atlas paints.xlsx --plot x.png
 """,
 }
 """Commands by the optional package that they need."""
-GROUPS = ("lab", "lights", "paints", "passes", "study")
+GROUPS = ("lab", "lab study", "lights", "paints", "passes")
 WITHOUT_ROWS = {
     "check": "checks all cubes that it can read",
     "export": "writes one file as its last act",

@@ -44,13 +44,8 @@ def cubes(small_cube):
             for each in ("pbrt", "luisa")
         ),
         (write_film, "cube", "a.npy", {"res": 1}, OptionError),
-        *(
-            (write_film, "cube", "a.npy", {"share": share}, OptionError)
-            for share in (1.0, float("nan"))
-        ),
         (write_film, "cube", "a.npy", {"light": "moonlight"}, UnknownNameError),
         (write_film, "cube", "a.npy", {"res": 4}, OutputError),
-        (write_light_program, "lights", "a.h", {"style": "hlsl"}, OptionError),
         (
             write_light_program,
             "lights",
@@ -60,10 +55,6 @@ def cubes(small_cube):
         ),
         (write_lut, "cube", "a.cube", {"light": "HP1", "res": 1}, OptionError),
         (write_lut, "cube", "a.cube", {"light": "moonlight"}, UnknownNameError),
-        *(
-            (write_program, "data", "a.h", {key: "x"}, UnknownNameError)
-            for key in ("style", "mode")
-        ),
         (write_program, "data", "a.h", {"form": "textures"}, OptionError),
         (
             write_program,

@@ -81,44 +81,39 @@ UPLOAD = """
 """
 
 
-def c(path, pairs, shares, compiler=("cc", "-std=c99")):
+COMPILERS = {
+    "c": (CC, ("cc", "-std=c99")),
+    "cpp": (CXX, ("c++", "-std=c++11", "-x", "c++", "-Wold-style-cast")),
+    "sanitized": (SANITIZERS, ("cc", *SANITIZED)),
+    "fast": (CC, ("cc", "-O2", "-ffast-math")),  # as if nothing was NaN
+}
+"""What each way to compile needs, and its command."""
+
+
+def run_c(path, host, given, compiler="c"):
+    """Return what a host prints for numbers, next to the header of a path."""
+    part, command = COMPILERS[compiler]
+    need(part)
+    folder = path.parent
+    (folder / "main.c").write_text(host)
+    command = [*command, *STRICT, "main.c", "-o", "main", "-lm"]
+    subprocess.run(command, cwd=folder, check=True)
+    done = subprocess.run(
+        [folder / "main"], input=given.tobytes(), capture_output=True, check=True
+    )
+    return np.frombuffer(done.stdout, given.dtype)
+
+
+def c(path, pairs, shares, compiler="c"):
     """Return results (n, 3, 3) of mixing two, n, and codes."""
-    need({"cc": CC, "c++": CXX}[compiler[0]])
     given = np.column_stack([pairs.reshape(-1, 6), shares]).astype(np.float32)
-    done = _compiled(path, HOST.format(header=path.name), compiler, given.tobytes())
-    return np.frombuffer(done, np.float32).reshape(-1, 3, 3)
-
-
-def cpp(path, pairs, shares):
-    compiler = ("c++", "-std=c++11", "-x", "c++", "-Wold-style-cast")
-    return c(path, pairs, shares, compiler)
-
-
-def sanitized(path, pairs, shares):
-    need(SANITIZERS)
-    return c(path, pairs, shares, ("cc", *SANITIZED))
-
-
-def fast(path, pairs, shares):
-    """Compiled as if nothing was NaN."""
-    return c(path, pairs, shares, ("cc", "-O2", "-ffast-math"))
+    host = HOST.format(header=path.name)
+    return run_c(path, host, given, compiler).reshape(-1, 3, 3)
 
 
 def ends_of_bytes(path, pairs):
     """Return codes (n, 2, 3) at both ends of mixtures of codes (n, 2, 3)."""
-    need(CC)
-    done = _compiled(path, BYTES, ("cc", "-std=c99"), pairs.astype(np.uint8).tobytes())
-    return np.frombuffer(done, np.uint8).reshape(-1, 2, 3)
-
-
-def _compiled(path, text, compiler, given):
-    folder = path.parent
-    (folder / "main.c").write_text(text)
-    command = [*compiler, *STRICT, "main.c", "-o", "main", "-lm"]
-    subprocess.run(command, cwd=folder, check=True)
-    return subprocess.run(
-        [folder / "main"], input=given, capture_output=True, check=True
-    ).stdout
+    return run_c(path, BYTES, pairs.astype(np.uint8)).reshape(-1, 2, 3)
 
 
 def js(path, pairs, shares):

@@ -6,14 +6,14 @@ It skips the test if the compiler or the browser is lacking.
 """
 
 import base64
-import subprocess
 
 import numpy as np
 import pytest
 
-from tests.extras.export.run_program import STRICT, draw
+from tests.extras.export.run_program import draw
+from tests.extras.paint.run_mixer import run_c
 from tests.helpers import output_of
-from tests.parts import CC, CHROMIUM, CXX, GLSLANG, SANITIZED, SANITIZERS, need
+from tests.parts import CHROMIUM, GLSLANG, need
 
 HOST = """
 #include <stdio.h>
@@ -62,27 +62,9 @@ void main(uint3 id : SV_DispatchThreadID) {{
 """
 
 
-def c(path, rows, compiler=("cc", "-std=c99")):
-    need({"cc": CC, "c++": CXX}[compiler[0]])
-    folder = path.parent
-    (folder / "main.c").write_text(HOST)
-    command = [*compiler, *STRICT, "main.c", "-o", "main", "-lm"]
-    subprocess.run(command, cwd=folder, check=True)
-    given = rows.astype(np.float32).tobytes()
-    done = subprocess.run(
-        [folder / "main"], input=given, capture_output=True, check=True
-    )
-    return np.frombuffer(done.stdout, np.float32).reshape(len(rows), -1)
-
-
-def cpp(path, rows):
-    compiler = ("c++", "-std=c++11", "-x", "c++", "-Wold-style-cast")
-    return c(path, rows, compiler)
-
-
-def sanitized(path, rows):
-    need(SANITIZERS)
-    return c(path, rows, ("cc", *SANITIZED))
+def c(path, rows, compiler="c"):
+    given = rows.astype(np.float32)
+    return run_c(path, HOST, given, compiler).reshape(len(rows), -1)
 
 
 def glsl(path, parts, films):

@@ -11,23 +11,22 @@ from tests.extras.texture.conftest import channels, planes, read_channels, write
 from tests.helpers import raises, warns
 from uplift.common.errors import ColourError, OptionError
 from uplift.extras.images.counts import Counts
-from uplift.extras.paint.coats import (
-    DARKEST,
-    Ingredients,
-    Medium,
-    dye_absorption,
-    dye_transmittance,
-    make_coat,
-    mix,
+from uplift.extras.paint.coats import DARKEST, Dyes, Pigments, dye_absorption
+from uplift.extras.paint.duntley import DuntleyPaints
+from uplift.extras.paint.optics import (
+    NO_SURFACE,
+    Layer,
+    Surface,
+    add_lights,
+    plate,
     ramp,
+    stack_filters,
 )
-from uplift.extras.paint.optics import NO_SURFACE, Layer, Surface, plate
 from uplift.extras.paint.overpaint import overpainter
 from uplift.extras.paint.pigments import CONSTANT, SQUARE_ROOT, Pigment, from_opaque
 from uplift.extras.texture.conversion import convert
 
 WHITE = np.ones(5)
-PLAIN = Medium(scattering=SQUARE_ROOT)
 OIL = Surface.of_index(1.5)
 DIFFUSE = Surface(0.092, OIL.inside)
 SURFACES = [NO_SURFACE, OIL, DIFFUSE]
@@ -37,86 +36,75 @@ T = np.array([0.0, 0.05, 0.5, 0.9, 1.0])
 @pytest.fixture
 def two(rng):
     """Two spectra, not darker than the surface of oil."""
-    return Ingredients(rng.uniform(0.1, 0.9, (2, 5)))
+    return rng.uniform(0.1, 0.9, (2, 5))
 
 
-@pytest.mark.parametrize("kind", ["pigment", "dye"])
 @pytest.mark.parametrize("surface", SURFACES)
-@pytest.mark.parametrize("rule", [SQUARE_ROOT, CONSTANT])
+@pytest.mark.parametrize(
+    "components",
+    [
+        Dyes,
+        lambda spectra: Pigments(spectra, SQUARE_ROOT),
+        lambda spectra: Pigments(spectra, CONSTANT),
+    ],
+)
 def test_a_single_colour_is_unchanged_and_thickness_0_leaves_the_ground(
-    two, rng, kind, surface, rule
+    two, rng, components, surface
 ):
-    for parts, expected in (([1, 0], two.spectra[0]), ([0, 3], two.spectra[1])):
-        found = mix(kind, two, parts, Medium(surface=surface, scattering=rule), WHITE)
+    mixed = components(two)
+    for parts, expected in (([1, 0], two[0]), ([0, 3], two[1])):
+        found = mixed.coat(parts, surface=surface).over(WHITE)
         assert_allclose(found, expected, rtol=1e-9)
     ground = rng.uniform(0.1, 1, 5)
-    assert_allclose(mix(kind, two, [1, 1], Medium(0.0, surface, rule), ground), ground)
+    assert_allclose(mixed.coat([1, 1], 0.0, surface).over(ground), ground)
 
 
 def test_paint_measured_on_white_and_black_round_trip(rng):
     layer = from_opaque(rng.uniform(0.2, 0.8, 5), SQUARE_ROOT).layer(1.0)
     white = OIL.apply(layer.over(1.0))
     black = OIL.apply(layer.over(0.0))
+    coat = Pigments(white[None], on_black=(black,)).coat([2], 1.0, OIL)
     for ground, expected in ((1.0, white), (0.04, black)):
-        found = mix(
-            "pigment", Ingredients(white[None], (black,)), [2], Medium(1.0, OIL), ground
-        )
-        assert_allclose(found, expected, rtol=1e-6)
+        assert_allclose(coat.over(ground), expected, rtol=1e-6)
 
 
 def test_filters_and_lights(two):
-    assert_allclose(
-        mix("light", two, [2, 1], PLAIN, 0.0), 2 * two.spectra[0] + two.spectra[1]
-    )
+    assert_allclose(add_lights(two, [2, 1]), 2 * two[0] + two[1])
     # 9.2.1.2 of the thesis: cyan light through an orange and a grey filter.
-    filters = Ingredients(np.array([[0, 1, 1], [1, 0.5, 0], [0.5, 0.5, 0.5]]))
-    assert_allclose(mix("filter", filters, [1, 1, 1], Medium(), 0.0), [0, 0.25, 0])
+    filters = np.array([[0, 1, 1], [1, 0.5, 0], [0.5, 0.5, 0.5]])
+    assert_allclose(stack_filters(filters, [1, 1, 1]), [0, 0.25, 0])
 
 
 def test_ramps_of_proportions(two):
     assert_allclose(ramp([1, 4, 1], 5)[:, 1], [0, 2, 4, 2, 0])
     assert ramp([1], 5).shape == (0, 1)
     parts = ramp([2, 1], 4)
-    medium = Medium(0.5, scattering=SQUARE_ROOT)
-    found = mix("pigment", two, parts, medium, WHITE)
-    assert_allclose(found, [mix("pigment", two, each, medium, WHITE) for each in parts])
-    with raises(OptionError):
-        ramp([1, 1], 1)
+    paints = Pigments(two, SQUARE_ROOT)
+    found = paints.coat(parts, 0.5).over(WHITE)
+    assert_allclose(found, [paints.coat(row, 0.5).over(WHITE) for row in parts])
 
 
 @pytest.mark.parametrize(
-    ("kind", "medium", "on_black", "code"),
+    ("components", "parts", "thickness"),
     [
-        ("paint", PLAIN, None, "option"),
-        ("filter", Medium(2.0), None, "option"),
-        ("light", Medium(surface=OIL, scattering=SQUARE_ROOT), None, "option"),
-        ("light", PLAIN, WHITE, "option"),
-        ("dye", PLAIN, WHITE, "option"),
-        ("dye", Medium(-1.0), None, "option"),
-        ("pigment", Medium(float("inf"), scattering=SQUARE_ROOT), None, "option"),
-        ("pigment", Medium(), None, "option"),
-        ("pigment", Medium(scattering=SQUARE_ROOT, plate=True), None, "option"),
-        ("filter", Medium(plate=True), None, "option"),
+        (Dyes, [1, 1], -1.0),
+        (DuntleyPaints, [1, 1], -1.0),
+        (lambda spectra: Pigments(spectra, SQUARE_ROOT), [1, 1], float("inf")),
+        (Pigments, [1, 1], None),
+        *((Dyes, parts, None) for parts in ([1, -1], [1, np.nan], [1, np.inf], 3.0)),
+        (Dyes, [0, 0], None),
     ],
 )
-def test_inapplicable_settings_raise(two, kind, medium, on_black, code):
-    with raises(OptionError, code):
-        mix(kind, Ingredients(two.spectra, (on_black, None)), [1, 1], medium, WHITE)
-
-
-@pytest.mark.parametrize("parts", [[1, -1], [1, np.nan], [1, np.inf], 3.0, [0, 0]])
-def test_invalid_parts_raise(two, parts):
-    with raises(OptionError):
-        mix("dye", two, parts, PLAIN, WHITE)
+def test_invalid_parts_and_thicknesses_raise(two, components, parts, thickness):
+    with raises(OptionError, "option"):
+        components(two).coat(parts, thickness)
 
 
 def test_colours_darker_than_the_surface_trigger_a_warning(two):
-    dark = Ingredients(np.stack([two.spectra[0], np.full(5, 0.03)]))
+    dark = Pigments(np.stack([two[0], np.full(5, 0.03)]), SQUARE_ROOT)
     with warns("warning"):
-        found = mix(
-            "pigment", dark, [0, 1], Medium(surface=OIL, scattering=SQUARE_ROOT), WHITE
-        )
-    assert_allclose(found, 0.04, atol=1e-4)
+        coat = dark.coat([0, 1], surface=OIL)
+    assert_allclose(coat.over(WHITE), 0.04, atol=1e-4)
 
 
 @pytest.mark.parametrize("ground", [0.0, 0.3, 1.0])
@@ -152,12 +140,11 @@ def test_a_plate_is_the_sum_over_passes_and_keeps_the_energy_of_clear_light(rho)
 
 
 def test_a_plate_of_index_1_is_the_layer_alone(two):
+    dyes = Dyes(two)
     for ground in (0.0, 0.3, 1.0):
-        found = mix("dye", two, [1, 2], Medium(1.5, plate=True), ground)
-        assert_allclose(found, mix("dye", two, [1, 2], Medium(1.5), ground))
-    assert (
-        mix("dye", two, [1, 2], Medium(1.5, OIL, plate=True), 0.0) >= OIL.outside
-    ).all()
+        found = dyes.plate([1, 2], 1.5).over(ground)
+        assert_allclose(found, dyes.coat([1, 2], 1.5).over(ground))
+    assert (dyes.plate([1, 2], 1.5, OIL).over(0.0) >= OIL.outside).all()
 
 
 @pytest.mark.parametrize("surface", SURFACES)
@@ -168,25 +155,21 @@ def test_duntley_s_paint_becomes_kubelka_and_munk_s_and_creates_no_energy(rng, s
     K, B = rng.uniform(0.1, 2, (2, 2, 5))
     constants = np.stack([K, B, np.full_like(K, 1e8), K, B, B], axis=1)
     for ground in (surface.outside, 0.5, 1.0):
-        found = mix(
-            "duntley", Ingredients(constants), [2, 1], Medium(0.7, surface), ground
-        )
+        found = DuntleyPaints(constants).coat([2, 1], 0.7, surface).over(ground)
         layer = Pigment(K, B).mix([2, 1]).layer(0.7)
         assert_allclose(
             found, surface.apply(layer.over(surface.remove(ground))), atol=1e-6
         )
     clear = rng.uniform(0, 2, (3, 6, 5)) * [[0], [1], [1], [0], [1], [1]]
-    assert_allclose(
-        mix("duntley", Ingredients(clear), [1, 2, 3], Medium(0.7, surface), WHITE), 1
-    )
+    assert_allclose(DuntleyPaints(clear).coat([1, 2, 3], 0.7, surface).over(WHITE), 1)
 
 
-def test_thicknesses_of_dyes_compose_and_black_is_finite():
-    K = np.array([0.2, 3])
-    assert_allclose(
-        dye_transmittance(K, 5), dye_transmittance(K, 2) * dye_transmittance(K, 3)
+def test_thicknesses_of_dyes_compose_and_black_is_finite(two):
+    thin, thick, both = (
+        Dyes(two).coat([1, 2], thickness).layer.transmittance for thickness in (2, 3, 5)
     )
-    assert_allclose(dye_transmittance(dye_absorption(T**2), 1), np.maximum(T, DARKEST))
+    assert_allclose(both, thin * thick)
+    assert_allclose(np.exp(-dye_absorption(T**2)), np.maximum(T, DARKEST))
 
 
 @pytest.fixture
@@ -198,9 +181,7 @@ def test_painted_colours_are_those_of_the_coated_spectra(small_cube, image, tmp_
     """Half a unit of the ColorChecker's red in oil. Other channels pass through."""
     atlas = small_cube.data.atlas
     red = small_cube.reflectance(atlas.rgb[atlas.names.index("red")])
-    glaze = make_coat(
-        "pigment", Ingredients(red[None]), [1], Medium(0.5, OIL, SQUARE_ROOT)
-    )
+    glaze = Pigments(red[None], SQUARE_ROOT).coat([1], 0.5, OIL)
     mask = np.linspace(0, 1, 30, dtype=np.float16).reshape(6, 5)
     write_exr(tmp_path / "in.exr", {**planes(image), "mask": mask})
     painter = overpainter(small_cube, glaze, {"of": "red"}, threads=1)
@@ -217,9 +198,7 @@ def test_pixels_outside_are_mapped_before_and_after_with_warnings(
     small_cube, image, tmp_path
 ):
     """A thick dye is saturated enough to leave the gamut."""
-    dye = make_coat(
-        "dye", Ingredients(small_cube.reflectance([[0.9, 0.1, 0.02]])), [1], Medium(3.0)
-    )
+    dye = Dyes(small_cube.reflectance([[0.9, 0.1, 0.02]])).coat([1], 3.0)
     write_exr(tmp_path / "in.exr", planes(image + 0.5))
     result = convert(
         overpainter(small_cube, dye, threads=1),

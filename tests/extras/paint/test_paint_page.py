@@ -10,13 +10,12 @@ from numpy.testing import assert_allclose
 
 from tests.browsing import WIDTHS, check_page, open_page, overflow, shared_tab
 from tests.extras.paint.invented import invented
-from tests.helpers import output_of, raises
+from tests.helpers import output_of
 from tests.parts import NODE, need
 from uplift.colorimetry import observer
 from uplift.colorimetry.delta_e import delta_e_rgb
-from uplift.common.errors import OutputError
 from uplift.extras.colour.srgb import decode, hex_codes
-from uplift.extras.paint.paint_page import page, write_page
+from uplift.extras.paint.paint_page import page
 from uplift.extras.paint.recipes import PaintTarget, match
 
 SENSOR = observer.sensor(wavelengths=(400, 700, 10))
@@ -161,15 +160,6 @@ def test_one_paint_and_names_of_markup(paints, tmp_path):
     assert overflow(tab) <= 0
     assert tab.errors == []
     assert text(tab, "recipe") == f"1 {name.strip()}"
-
-
-def test_files_that_exist_stay(paints, tmp_path):
-    path = tmp_path / "paints.html"
-    path.write_text("mine")
-    with raises(OutputError, "file-exists"):
-        write_page(paints, path)
-    write_page(paints, path, force=True)
-    assert path.read_text("utf-8") == page(paints)
 
 
 def test_differences_in_javascript_are_ciede2000(repository, tmp_path):

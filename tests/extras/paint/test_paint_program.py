@@ -9,20 +9,16 @@ from numpy.testing import assert_allclose
 
 from tests.extras.paint import run_paints
 from tests.extras.paint.invented import invented
-from tests.helpers import raises
 from uplift.colorimetry import observer
 from uplift.colorimetry.delta_e import delta_e_rgb
-from uplift.common.errors import OptionError, OutputError, UnknownNameError
 from uplift.extras.colour.srgb import decode, encode
 from uplift.extras.paint.paint_exports import (
     HIDDEN,
     LUT_SIZE,
-    PAINT_EXPORTS,
     export_lut,
     hiding_thickness,
 )
 from uplift.extras.paint.paint_program import (
-    LANGUAGES,
     describe_errors,
     few_samples,
     write_program,
@@ -70,7 +66,7 @@ def expected(few, row):
 
 @pytest.mark.parametrize("name", ["c", "cpp", "sanitized"])
 def test_programs_mix_as_python(samples, folder, rows, name):
-    found = getattr(run_paints, name)(folder / "tubes.h", rows)
+    found = run_paints.c(folder / "tubes.h", rows, name)
     count = len(samples.paints.wavelengths)
     pairs = [expected(samples.paints, row) for row in rows]
     opaque, layers = np.moveaxis(np.array(pairs), 1, 0)
@@ -138,23 +134,9 @@ def test_any_file_name_gives_identifiers(paints, tmp_path):
     assert "cube_2_t_bes_x_mix(" in (tmp_path / "2 tübes-x.h").read_text()
 
 
-def test_unknown_languages_and_files_that_exist(paints, tmp_path):
-    with raises(UnknownNameError):
-        write_program(paints, tmp_path / "tubes.rs", style="rust")
-    (tmp_path / "tubes.h").write_text("mine")
-    with raises(OutputError, "file-exists"):
-        write_program(paints, tmp_path / "tubes.h")
-    assert (tmp_path / "tubes.h").read_text() == "mine"
-    assert len(list(tmp_path.iterdir())) == 1
-
-
 def test_one_paint_is_a_program(paints):
     alone = few_samples(paints.select(["red"]))
     assert alone.opaque_errors.max() < 0.01
-
-
-def test_every_language_is_an_export():
-    assert {name: PAINT_EXPORTS[name].suffix for name in LANGUAGES} == SUFFIXES
 
 
 NODES = np.random.default_rng(1).integers(0, LUT_SIZE, (60, 3)) / (LUT_SIZE - 1)
@@ -198,10 +180,3 @@ def test_layers_hide_at_their_thickness(paints):
             return delta_e_rgb(sensor, *colours)
 
         assert difference(thickness) <= HIDDEN < difference(thickness / 1.06)
-
-
-def test_a_table_has_two_paints(paints, tmp_path):
-    for names in (["red"], ["red", "white", "blue"]):
-        with raises(OptionError, "two-paints"):
-            export_lut(paints.select(names), tmp_path / "a.cube", "cube", force=False)
-    assert list(tmp_path.iterdir()) == []

@@ -13,7 +13,6 @@ from uplift.extras.paint.paint_samples import (
     read_paint_samples,
 )
 from uplift.extras.paint.paints_file import read_paints
-from uplift.extras.paint.recipe_table import read_recipes
 from uplift.samples import sample_path
 
 NM = np.arange(400, 701, 20)
@@ -315,11 +314,3 @@ def test_recipes_of_no_sample_raise(write):
         read_paint_samples(spectra, recipes)
     with raises(AtlasError):
         read_paint_samples(spectra, spectra.with_name("none.csv"))
-
-
-def test_a_table_knows_its_kind(write):
-    assert read_recipes(write(TWO)).has_spectra
-    assert not read_recipes(write(COLOURS)).has_spectra
-    ground, film, *_ = read_recipes(write(FILMS)).recipes
-    assert (ground.is_ground, film.is_ground) == (True, False)
-    assert (film.line, film.ground) == (3, "card")

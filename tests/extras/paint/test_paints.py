@@ -9,7 +9,7 @@ from tests.extras.paint.invented import OIL, WAVELENGTHS, invented
 from tests.helpers import raises
 from uplift.colorimetry.delta_e import lab
 from uplift.common.errors import OptionError, UnknownNameError
-from uplift.extras.paint.optics import Surface, beneath_surface, through_surface
+from uplift.extras.paint.optics import beneath_surface, through_surface
 from uplift.extras.paint.paints import Paints, strengths
 from uplift.extras.paint.pigments import Pigment
 
@@ -45,13 +45,6 @@ def test_a_film_is_thin_layers_beneath_the_surface(paints):
         expected = OIL.outside + inside * internal / (1 - OIL.inside * internal)
         film = paints.reflectance(PARTS, thickness, GROUND)
         assert_allclose(film, expected, atol=2e-4)
-
-
-def test_thick_films_are_opaque_and_thickness_0_shows_the_ground(paints):
-    opaque = paints.reflectance(PARTS)
-    for ground in (0.0, 0.5, 1.0):
-        assert_allclose(paints.reflectance(PARTS, 1e6, ground), opaque, rtol=1e-9)
-    assert_allclose(paints.reflectance(PARTS, 0.0, GROUND), GROUND, rtol=1e-12)
 
 
 def test_only_shares_count_and_a_paint_with_itself_is_the_paint(paints):
@@ -130,12 +123,6 @@ def test_invalid_parts_raise(paints, parts):
         paints.reflectance(parts)
 
 
-@pytest.mark.parametrize("thickness", [-1.0, np.nan, np.inf])
-def test_invalid_thicknesses_raise(paints, thickness):
-    with raises(OptionError):
-        paints.reflectance(PARTS, thickness)
-
-
 def test_jax_has_the_numbers_of_numpy(paints):
     K = paints.pigments.absorption
     S = paints.pigments.scattering
@@ -170,9 +157,3 @@ def test_gradients_are_finite_at_black():
             back = jax.jacrev(lambda xyz: lab(xyz, white))(xyz)
             assert np.isfinite(slopes).all()
             assert_allclose(slopes, back, rtol=1e-12)
-
-
-def test_a_surface_is_removed_as_it_is_applied():
-    internal = np.linspace(0, 1, 11)
-    for surface in (Surface(), OIL, Surface(0.0, 0.6)):
-        assert_allclose(surface.remove(surface.apply(internal)), internal, atol=1e-12)

@@ -22,7 +22,6 @@ from uplift.extras.paint.pigments import (
     CONSTANT,
     SQUARE_ROOT,
     Pigment,
-    PowerOfReflectance,
     dispersive,
     from_black_and_white,
     from_opaque,
@@ -30,7 +29,7 @@ from uplift.extras.paint.pigments import (
 
 SEVERAL = Pigment(np.array([0.3, 2.0, 0.01]), np.array([1.5, 0.2, 4.0]))
 R = np.linspace(pigments.DARKEST, 1, 200)
-RULES = [CONSTANT, SQUARE_ROOT, PowerOfReflectance(1.0)]
+RULES = [CONSTANT, SQUARE_ROOT, np.positive]
 
 
 @pytest.mark.parametrize(

@@ -1,7 +1,5 @@
 """Recipes: known ones are found again, and no grid of parts has a better one."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
@@ -13,7 +11,7 @@ from uplift.colorimetry.delta_e import delta_e_2000, delta_e_spectra, lab
 from uplift.common.errors import OptionError
 from uplift.extras.paint.paints import Paints
 from uplift.extras.paint.pigments import Pigment
-from uplift.extras.paint.recipes import NEARLY, PaintTarget, descend, match, shares_of
+from uplift.extras.paint.recipes import NEARLY, PaintTarget, match
 
 GRID = (400, 700, 20)
 
@@ -151,14 +149,6 @@ def test_few_parts_suffice(paints):
     assert errors[2] < NEARLY
 
 
-def test_costs_are_those_of_a_part(paints):
-    priced = replace(paints, prices=(1.0, 2.0, np.nan, 5.0))
-    best = match(target(paints.reflectance([3, 1, 0, 0])), priced)[0]
-    assert best.cost == pytest.approx(1.25)
-    best = match(target(paints.reflectance([3, 0, 1, 0])), priced)[0]
-    assert np.isnan(best.cost)
-
-
 def test_one_paint_and_sets_larger_than_the_choice(paints):
     alone = match(target(np.full(16, 0.5)), paints.select(["red"]), count=5)
     assert [recipe.paints for recipe in alone] == [("red",)]
@@ -188,22 +178,3 @@ def test_too_many_sets_raise():
     many = Paints(names, invented().wavelengths, Pigment(rows, rows))
     with raises(OptionError, "too-many-recipes"):
         match(target(np.full(16, 0.5)), many, count=3)
-
-
-def test_a_negative_thickness_raises(paints):
-    with raises(OptionError):
-        match(target(np.full(16, 0.5), thickness=-1.0), paints)
-
-
-def test_descent_finds_minima_and_keeps_what_cannot_improve():
-    """Rows are independent: two have a solution, and the third one is constant."""
-    aims = np.array([[0.2, 0.5, 0.3], [0.7, 0.1, 0.2], [0.0, 0.0, 0.0]])
-    weights = np.array([[1.0], [1.0], [0.0]])
-
-    def residuals(ratios):
-        return weights * (shares_of(ratios) - aims)
-
-    ratios, squares = descend(residuals, np.zeros((3, 2)))
-    assert_allclose(shares_of(ratios)[:2], aims[:2], atol=1e-6)
-    assert_allclose(squares, 0, atol=1e-12)
-    assert (ratios[2] == 0).all()

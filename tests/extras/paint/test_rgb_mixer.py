@@ -183,26 +183,24 @@ def test_bad_colours(mixer, colour):
         mixer.mix_all([colour], [1])
 
 
-@pytest.mark.parametrize("share", [-0.1, 1.1, np.nan, [0.5, 2]])
-def test_bad_shares(mixer, share):
+BAD = [
+    *(("mix", (BLUE, YELLOW, share)) for share in (-0.1, 1.1, np.nan, [0.5, 2])),
+    *(("mix_all", ([BLUE, YELLOW], parts)) for parts in ([0, 0], [1, -1], [np.inf, 1])),
+]
+
+
+@pytest.mark.parametrize(("method", "values"), BAD)
+def test_bad_shares_and_parts(mixer, method, values):
     with raises(OptionError):
-        mixer.mix(BLUE, YELLOW, share)
+        getattr(mixer, method)(*values)
 
 
-@pytest.mark.parametrize("parts", [[0, 0], [1, -1], [np.inf, 1]])
-def test_bad_parts(mixer, parts):
-    with raises(OptionError):
-        mixer.mix_all([BLUE, YELLOW], parts)
-
-
-@pytest.mark.parametrize("dim", [1, 66])
-def test_bad_dims(small_cube, dim):
-    with raises(OptionError):
-        make_mixer(small_cube, dim)
-
-
-def test_sparse_cubes_have_no_mixer(small_cube):
-    sparse = Cube(with_absent_points(small_cube.data, near_black(small_cube.data)))
-    with raises(OptionError) as caught:
-        make_mixer(sparse)
-    assert caught.value.code == "sparse-cube"
+@pytest.mark.parametrize(("dim", "code"), [(1, "option"), (66, "option"), (9, None)])
+def test_cubes_and_dims_without_a_mixer(small_cube, dim, code):
+    data = small_cube.data
+    cube = small_cube
+    if code is None:
+        code = "sparse-cube"
+        cube = Cube(with_absent_points(data, near_black(data)))
+    with raises(OptionError, code):
+        make_mixer(cube, dim)

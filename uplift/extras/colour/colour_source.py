@@ -9,7 +9,7 @@ from collections.abc import Iterator, Sequence
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass
 from itertools import chain
-from typing import IO, Any
+from typing import IO, TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -17,7 +17,9 @@ from uplift.colorimetry.sensor import SLACK, Sensor
 from uplift.common.arrays import Array
 from uplift.common.errors import ColourError, UpliftWarning
 from uplift.common.text import format_value
-from uplift.extras.colour.spaces import ImageSpace
+
+if TYPE_CHECKING:
+    from uplift.extras.colour.spaces import ImageSpace
 from uplift.extras.files.csv import (
     DELIMITERS,
     find_delimiter,
@@ -68,7 +70,7 @@ class ColourSource:
     path: str | None = None
     xyz: tuple[float, float, float] | None = None
     encoded: bool = False
-    space: ImageSpace | None = None
+    space: "ImageSpace | None" = None
 
     @property
     def single(self) -> bool:

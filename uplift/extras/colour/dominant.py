@@ -91,10 +91,11 @@ def crossing(path: Array, direction: Array) -> tuple[Any, Array, Array]:
 
     The distance is in units of the direction, infinite for a ray that meets no edge. Of
     several edges, as at the end of the locus, it is the farthest. Shapes: ``path`` (n,
-    2), ``direction`` (..., 2) → (...).
+    2), or one of each ray (..., n, 2), ``direction`` (..., 2) → (...).
     """
     # t · direction = start + f · edge, solved by Cramer's rule
-    (x, y), (u, v) = path[:-1].T, np.diff(path, axis=0).T
+    x, y = np.moveaxis(path[..., :-1, :], -1, 0)
+    u, v = np.moveaxis(np.diff(path, axis=-2), -1, 0)
     a = direction[..., :1]
     b = direction[..., 1:]
     determinant = a * v - b * u

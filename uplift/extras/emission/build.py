@@ -3,7 +3,6 @@
 import os
 from collections.abc import Collection, Sequence
 from dataclasses import asdict
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,7 +14,7 @@ from uplift.colorimetry import observer as observers
 from uplift.common.arrays import Array, StrPath
 from uplift.common.errors import OptionError, UpliftWarning, warn
 from uplift.common.machine import single_threaded_blas
-from uplift.common.text import format_value, listed, pluralise
+from uplift.common.text import listed, pluralise
 from uplift.common.version import version
 from uplift.extras.colour.light_sets import STANDARD_ILLUMINANTS
 from uplift.extras.colour.spaces import look_up_space, primaries_of
@@ -31,13 +30,13 @@ from uplift.extras.emission.prior import (
     fit_lamp_prior,
     relit_delta_e,
 )
+from uplift.lookup.blocks import as_whole_number
 
 ERROR_LENGTH = 0.02
 """Distance in u′v′ over which errors of left-out lamps are averaged."""
 FAR_SHARE = 1e-2
 """Weight of the mean error of all lamps, which far from them is the expected one."""
-MAX_KNOTS = 1024
-MAX_RINGS = 512
+MAX_NODES = 1024
 SURFACES = "macbeth"
 """Atlas of the surfaces by which predictions of lamps are judged."""
 
@@ -70,7 +69,7 @@ def build_emission(
         Nodes around white, 3 to 1024. The spectral locus has one at each corner, so
         there are never fewer than these.
     rings : int, default 24
-        Nodes from white to the locus, 3 to 512.
+        Nodes from white to the locus, 3 to 1024.
     space : str, default "sRGB"
         RGB space of queries, by its name in colour-science. White is the white of the
         space, without adaptation.
@@ -108,8 +107,13 @@ def build_emission(
     >>> table.rgb(table.spectrum([3.0, 0.2, 0.1])).round(6).tolist()
     [3.0, 0.2, 0.1]
     """
-    _check_count("knots", knots, MAX_KNOTS)
-    _check_count("rings", rings, MAX_RINGS)
+    knots = as_whole_number(knots, "knots", 3)
+    rings = as_whole_number(rings, "rings", 3)
+    if max(knots, rings) > MAX_NODES:
+        raise OptionError(
+            f"knots and rings must each be a whole number from 3 to {MAX_NODES}, got "
+            f"{knots} and {rings}"
+        )
     observers.require_observer(observer, "emission tables")
     sensor = observers.sensor(space, "D65", observer)
     radiometry = sensor.cmfs / sensor.cmfs[:, 1].sum()
@@ -121,9 +125,7 @@ def build_emission(
     surfaces = on_grid(read_atlas(SURFACES), observers.grid())
 
     prior, left_out = fit_lamp_prior(lamps, surfaces, radiometry, len(exact))
-    lattice, locus = locus_lattice(
-        radiometry, white, int(knots), np.linspace(0, 1, int(rings))
-    )
+    lattice, locus = locus_lattice(radiometry, white, knots, np.linspace(0, 1, rings))
     uv = lattice.nodes[:, :-1].reshape(-1, 2)
     inner = mix_with_locus(
         nearest_lights(prior(uv), uv, radiometry), uv, lattice, locus, radiometry
@@ -135,7 +137,7 @@ def build_emission(
 
     entries, duplicates = lamp_entries(exact, others, lattice, radiometry)
     _warn_of_duplicates(duplicates)
-    options = {"knots": int(knots), "rings": int(rings), "without": sorted(without)}
+    options = {"knots": knots, "rings": rings, "without": sorted(without)}
     data = EmissionData(
         space=sensor.space,
         observer=sensor.observer,
@@ -177,7 +179,7 @@ def _choose_lamps(
     """
     if atlas is None:
         is_standard = np.isin(known.names, STANDARD_ILLUMINANTS)
-        return _rows(known, is_standard), _rows(known, ~is_standard), ()
+        return known.only(is_standard), known.only(~is_standard), ()
     if not isinstance(atlas, Atlas):
         atlas = read_lamps(
             *([atlas] if isinstance(atlas, str | os.PathLike) else atlas)
@@ -195,11 +197,7 @@ def _choose_lamps(
         and np.abs(exact.power - row).max(axis=1).min() > SAME_LAMP * row.max()
         for name, row in zip(known.names, known.power, strict=True)
     ]
-    return exact, _rows(known, np.array(is_other)), atlas.sources
-
-
-def _rows(lamps: Lamps, kept: NDArray[np.bool_]) -> Lamps:
-    return Lamps(tuple(np.array(lamps.names)[kept].tolist()), lamps.power[kept])
+    return exact, known.only(np.array(is_other)), atlas.sources
 
 
 def _expected_error(
@@ -227,14 +225,3 @@ def _record(source: Source) -> dict[str, str]:
     """
     scale = {} if source.measured == "auto" else {"measured": source.measured}
     return {"name": source.name, "digest": source.digest, **scale}
-
-
-def _check_count(name: str, value: Any, most: int) -> None:
-    if (
-        isinstance(value, bool)
-        or not isinstance(value, int | np.integer)
-        or not 3 <= value <= most
-    ):
-        raise OptionError(
-            f"{name} must be a whole number from 3 to {most}, got {format_value(value)}"
-        )

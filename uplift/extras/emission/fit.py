@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from uplift.common.arrays import Array, Indices
+from uplift.extras.colour.dominant import crossing
 from uplift.extras.emission.lattice import (
     DENOMINATOR,
     LOCUS_TOLERANCE,
@@ -167,24 +168,12 @@ def mix_with_locus(
     `locus` (K, N) is the power at the knots; it, `power` and the result have unit X +
     15 Y + 3 Z.
     """
-    knots = lattice.knots
-    edges = np.roll(knots, -1, axis=0) - knots
+    outline = np.concatenate([lattice.knots, lattice.knots[:1]])
     reached = chromaticity(power @ radiometry)
-    # Where rays from the chromaticity that was reached through the wanted one leave the
-    # polygon: the solutions of reached + length (uv − reached) = knot + along edge, for
-    # all rays and edges.
-    direction = uv - reached
-    denominator = cross(direction[:, None], edges)
-    offset = knots - reached[:, None]
-    valid = np.abs(denominator) > 0
-    safe = np.where(valid, denominator, 1.0)
-    length = cross(offset, edges) / safe
-    along = cross(offset, direction[:, None]) / safe
-    inside = valid & (length > 0) & (along >= -1e-9) & (along <= 1 + 1e-9)
-    length = np.where(inside, length, np.inf)
-    rows = np.arange(len(uv))
-    sector = length.argmin(axis=1)
-    share = (1 / np.maximum(length[rows, sector], 1.0))[:, None]
-    position = np.clip(along[rows, sector], 0.0, 1.0)[:, None]
-    edge = (1 - position) * locus[sector] + position * locus[(sector + 1) % len(locus)]
+    # where rays from the chromaticity that was reached through the wanted one leave the
+    # polygon
+    sector, position, length = crossing(outline - reached[:, None], uv - reached)
+    share = (1 / np.maximum(length, 1.0))[:, None]
+    along = position[:, None]
+    edge = (1 - along) * locus[sector] + along * locus[(sector + 1) % len(locus)]
     return (1 - share) * power + share * edge

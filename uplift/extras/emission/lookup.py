@@ -23,7 +23,6 @@ from uplift.extras.emission.chromaticities import (
 from uplift.extras.emission.file import EmissionData, read_emission, write_emission
 from uplift.lattice.lattice import weighted_sum
 from uplift.lookup.blocks import (
-    Function,
     as_float_type,
     as_thread_count,
     as_wavelengths,
@@ -138,7 +137,9 @@ class EmissionTable:
         OptionError
             Invalid wavelengths, treatment, type or number of threads.
         """
-        return self._query(self._rows_to_xyz, rgb, wavelengths, outside, dtype, threads)
+        return self.spectrum_of_xyz(
+            self.xyz(rgb), wavelengths, outside=outside, dtype=dtype, threads=threads
+        )
 
     def spectrum_of_xyz(
         self,
@@ -177,20 +178,6 @@ class EmissionTable:
         OptionError
             Invalid wavelengths, treatment, type or number of threads.
         """
-        return self._query(_checked, xyz, wavelengths, outside, dtype, threads)
-
-    def _query(
-        self,
-        convert: Function,
-        colours: ArrayLike,
-        wavelengths: ArrayLike | None,
-        outside: str,
-        dtype: DTypeLike,
-        threads: int,
-    ) -> NDArray[Any]:
-        """Spectral power (..., N) of colours (..., 3), whose rows are converted to XYZ
-        block by block.
-        """
         if outside not in OUTSIDE:
             raise OptionError(
                 f"unknown treatment of colours outside '{outside}'",
@@ -208,14 +195,10 @@ class EmissionTable:
         )
 
         def power(rows: Array) -> NDArray[Any]:
-            return power_of_xyz(
-                self.data, nodes, entries, convert(rows), clip=outside == "clip"
-            )
+            clip = outside == "clip"
+            return power_of_xyz(self.data, nodes, entries, _checked(rows), clip=clip)
 
-        return blockwise(power, as_rgb(colours), len(at), kind, count)
-
-    def _rows_to_xyz(self, rgb: NDArray[Any]) -> Array:
-        return blocked_matmul(_checked(rgb), self.data.rgb_to_xyz.T)
+        return blockwise(power, as_rgb(xyz), len(at), kind, count)
 
     def xyz(self, rgb: ArrayLike) -> Array:
         """Convert linear RGB to XYZ.
@@ -235,7 +218,10 @@ class EmissionTable:
         ColourError
             Values that are not finite.
         """
-        return blockwise(self._rows_to_xyz, as_rgb(rgb), 3)
+        matrix = self.data.rgb_to_xyz.T
+        return blockwise(
+            lambda rows: blocked_matmul(_checked(rows), matrix), as_rgb(rgb), 3
+        )
 
     def rgb(self, power: ArrayLike) -> Array:
         """Compute the linear RGB of lights, the inverse of `spectrum`.

@@ -31,23 +31,27 @@ import numpy as np
 from uplift.colorimetry.delta_e import delta_e_rgb
 from uplift.colorimetry.observer import on_range
 from uplift.colorimetry.sensor import Sensor
-from uplift.common.arrays import Array, Floats, StrPath, Values, blocks
+from uplift.common.arrays import Array, Floats, Indices, StrPath, Values, blocks
 from uplift.common.errors import OptionError
 from uplift.common.files import atomic_write
 from uplift.cube.data import CubeData
 from uplift.extras.colour.srgb import decode
+from uplift.extras.export.grid_table import (
+    TableError,
+    check_res,
+    find_errors,
+    grid_nodes,
+)
 from uplift.extras.export.source import read_source
-from uplift.extras.export.table_error import TableError, find_errors
 from uplift.lookup.cube import Cube
 from uplift.lookup.interpolate import around
-from uplift.models.arithmetic import blocked_matmul_columns
-from uplift.models.minimum_norm import solve_damped
+from uplift.models.arithmetic import blocked_matmul
+from uplift.models.least_squares import least_squares
 from uplift.models.sigmoid import Sigmoid, evaluate_unscaled, unscaled
 
 MAGIC = b"SPEC"
 RES = 64
 """Resolution of Mitsuba's own table."""
-MIN_RES = 2
 MAX_RES = 256
 DARK = 1e-3
 """Level of linear RGB up to which `DARK_COLOUR` holds."""
@@ -59,11 +63,8 @@ responds.
 """
 FAINT = 1e-6
 """Reflectance of black, and 1 minus that of white, whose multipliers are infinite."""
-FIRST_DAMPING = 1e-6
-MAX_DAMPING = 1e6
+PRECISION = 1e-6
 MAX_STEPS = 200
-SMALL_GAIN = 1e-2
-SMALL_PART = 1e-4
 BLOCK = 1 << 10
 """Points of a level that are fitted at a time."""
 START = 360.0
@@ -116,11 +117,7 @@ def write_coeff(
     camera, `OptionError` for a space or an illuminant without a table in the program.
     """
     data.sensor.require_xyz()
-    if not MIN_RES <= res <= MAX_RES:
-        raise OptionError(
-            f"res must be from {MIN_RES} to {MAX_RES}, got {res}",
-            hint=f"{RES} is the default",
-        )
+    check_res(res, RES, MAX_RES)
     sensor = on_range(data.sensor, START, END, STEP)
     name = SYMBOLS.get((sensor.space, sensor.illuminant), "")
     if name not in LAYOUTS[layout]:
@@ -190,11 +187,9 @@ def _directions(res: int) -> Array:
     """Return linear RGB (3·res·res, 3) of the table's points whose largest component is
     1.
     """
-    share = np.linspace(0, 1, res)
-    second, first = np.meshgrid(share, share, indexing="ij")
+    second, first = grid_nodes(np.linspace(0, 1, res), 2).T
     shares = np.stack([np.ones_like(first), first, second], axis=-1)
-    rolled = [np.roll(shares, largest, axis=-1) for largest in range(3)]
-    return np.stack(rolled).reshape(-1, 3)
+    return np.concatenate([np.roll(shares, largest, axis=-1) for largest in range(3)])
 
 
 def _fit(data: CubeData, sensor: Sensor, scale: Array, directions: Array) -> Floats:
@@ -224,60 +219,33 @@ def _fit(data: CubeData, sensor: Sensor, scale: Array, directions: Array) -> Flo
 def _nearest_to_grey(
     sensor: Sensor, start: Array, target: Array, level: float
 ) -> Array:
-    """Minimise |t − r(p)|² / ε² + |p − g|² / s² over p (n, 3) from a start, by damped
-    Gauss-Newton steps.
+    """Minimise |r(p) − t|² / ε² + |p − g|² / s² over p (n, 3) from a start.
 
     g are the multipliers of the grey of this level, and s their size, at least 1.
     """
     grey = MODEL.from_reflectance(np.clip(level, FAINT, 1 - FAINT)) * MODEL.constant()
     size = np.maximum(np.abs(grey).max(), 1)
     unit = DARK_COLOUR * DARK / max(level, DARK)
-    p = start.copy()
-    rows = np.arange(len(start))
-    damping = np.full(len(start), FIRST_DAMPING)
-    left, jacobian = _linearised(sensor, p, target, unit)
-    cost = (left**2).sum(axis=0) + (((grey - p) / size) ** 2).sum(axis=1)
-    for _ in range(MAX_STEPS):
-        # (JᵀJ + I / s² + μ tr I) Δ = Jᵀ (t − r) / ε + (g − p) / s²
-        products = (
-            np.einsum("abn,acn->bcn", jacobian, jacobian)
-            + np.eye(3)[:, :, None] / size**2
-        )
-        goal = np.einsum("abn,an->bn", jacobian, left) + (grey - p[rows]).T / size**2
-        lower = [products[row, : row + 1] for row in range(3)]
-        change = np.stack(solve_damped(lower, damping[rows], goal), axis=-1)
-        trial = p[rows] + change
-        after, there = _linearised(sensor, trial, target[rows], unit)
-        reached = (after**2).sum(axis=0) + (((grey - trial) / size) ** 2).sum(axis=1)
-        gain = cost[rows] - reached
-        better = gain > 0
-        p[rows[better]] = trial[better]
-        cost[rows[better]] = reached[better]
-        damping[rows] *= np.where(better, 1 / 4, 4)
-        left = np.where(better, after, left)
-        jacobian = np.where(better, there, jacobian)
-        going = ~better & (damping[rows] < MAX_DAMPING) | (
-            gain > SMALL_GAIN + SMALL_PART * reached
-        )
-        rows = rows[going]
-        left = left[:, going]
-        jacobian = jacobian[:, :, going]
-        if not rows.size:
-            break
-    return p
-
-
-def _linearised(
-    sensor: Sensor, p: Array, target: Array, unit: float
-) -> tuple[Array, Array]:
-    """Return (t − r(p)) / ε, (3, n), and the Jacobian of r / ε, (3, 3, n)."""
     basis = MODEL.basis(sensor.wavelengths)
-    x = blocked_matmul_columns(basis, p.T)
-    products = (sensor.matrix[:, None, :] * basis.T).reshape(-1, len(basis))
-    jacobian = blocked_matmul_columns(products, MODEL.derivative(x)).reshape(3, 3, -1)
-    return (
-        target.T - blocked_matmul_columns(sensor.matrix, MODEL.to_reflectance(x))
-    ) / unit, jacobian / unit
+    weights = sensor.matrix.T / unit
+    products = (weights[:, :, None] * basis[:, None]).reshape(len(basis), -1)
+
+    def residuals(p: Array, rows: Indices) -> Array:
+        colour = blocked_matmul(
+            MODEL.to_reflectance(blocked_matmul(p, basis.T)), weights
+        )
+        return np.concatenate([colour - target[rows] / unit, (p - grey) / size], axis=1)
+
+    def normal_equations(p: Array, residual: Array, _: Indices) -> tuple[Array, Array]:
+        slopes = blocked_matmul(MODEL.derivative(blocked_matmul(p, basis.T)), products)
+        jacobian = slopes.reshape(-1, 3, 3)
+        transposed = jacobian.swapaxes(1, 2)
+        towards = transposed @ residual[:, :3, None] + residual[:, 3:, None] / size
+        return transposed @ jacobian + np.eye(3) / size**2, towards[..., 0]
+
+    return least_squares(
+        residuals, normal_equations, start, max_steps=MAX_STEPS, precision=PRECISION
+    )
 
 
 def _targets(data: CubeData, rgb: Array) -> Array:
@@ -300,18 +268,17 @@ def _interpolated(scale: Array, table: Floats, rgb: Array) -> Array:
     """Return coefficients (n, 3) as rgb2spec interpolates them: linearly between the
     eight points around a colour.
     """
-    from scipy.interpolate import RegularGridInterpolator
+    from scipy.interpolate import interpn
 
     largest = rgb.argmax(axis=1)
     rows = np.arange(len(rgb))
     even = np.linspace(0, 1, len(scale))
     level = np.maximum(rgb[rows, largest], np.finfo(float).tiny)  # of black
-    places = np.stack(
-        [level, *(rgb[rows, (largest + step) % 3] / level for step in (2, 1))], axis=-1
-    )
+    shares = [rgb[rows, (largest + step) % 3] / level for step in (2, 1)]
+    places = np.stack([level, *shares], axis=-1)
     coefficients = np.zeros((len(rgb), 3))
     for axis in range(3):
         colours = largest == axis
-        interpolate = RegularGridInterpolator((scale, even, even), table[axis])
-        coefficients[colours] = interpolate(places[colours])
+        axes = (scale, even, even)
+        coefficients[colours] = interpn(axes, table[axis], places[colours])
     return coefficients

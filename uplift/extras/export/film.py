@@ -46,13 +46,13 @@ from uplift.common.errors import OptionError
 from uplift.common.files import atomic_write, write_text
 from uplift.extras.colour.dominant import crossing
 from uplift.extras.colour.srgb import decode
+from uplift.extras.export.grid_table import check_res, grid_nodes
 from uplift.extras.export.outputs import output_files
 from uplift.extras.export.source import read_source
 from uplift.extras.files.outputs import check_outputs
 from uplift.lookup.cube import Cube
 
 SIZE = 192
-MIN_SIZE = 2
 MAX_SIZE = 1024
 SHARE = 0.4
 """Luminance of a stored reflectance, as a fraction of the largest of its chromaticity.
@@ -114,17 +114,14 @@ def write_film(
     *,
     light: Illuminant | None = None,
     res: int = SIZE,
-    share: float = SHARE,
     force: bool = False,
 ) -> FilmTable:
     """Write a cube as a film table of chromaticities, .npy, and the TOML file that
     describes it.
 
     ``light``, for the kind ``irradiance`` in place of ``reflectance``, is that of the
-    cube. ``res`` are rows and columns, 2 to 1024; ``share`` in (0, 1) is the luminance
-    of the stored reflectances as a fraction of the largest possible one. Raises
-    `OptionError`, also for an observer other than CIE 1931, and `ColourError` for a
-    camera.
+    cube. ``res`` are rows and columns, 2 to 1024. Raises `OptionError`, also for an
+    observer other than CIE 1931, and `ColourError` for a camera.
     """
     sensor = cube.data.sensor
     sensor.require_xyz()
@@ -133,17 +130,12 @@ def write_film(
             f"a film table needs the {DEFAULT_OBSERVER}, got a cube of "
             f"{sensor.observer}"
         )
-    if not MIN_SIZE <= res <= MAX_SIZE or not 0 < share < 1:
-        raise OptionError(
-            f"res must be from {MIN_SIZE} to {MAX_SIZE} and share in (0, 1), got "
-            f"{res} and {share:g}",
-            hint=f"readers expect {SIZE} rows; the usual share is {SHARE}",
-        )
+    check_res(res, SIZE, MAX_SIZE)
     files = output_files(path, "film")
     check_outputs(files, force=force)
     scene = _scene(sensor, light)
     unit = _chromaticities(res)
-    spectra, inside = _spectra(cube, scene, unit, share)
+    spectra, inside = _spectra(cube, scene, unit)
     kind = "irradiance" if light else "reflectance"
     stored = spectra if light else spectra / scene.power
     table = stored.reshape(res, res, -1).astype("<f2")
@@ -184,16 +176,14 @@ def _scene(sensor: Sensor, light: Illuminant | None) -> Scene:
 
 def _chromaticities(size: int) -> Array:
     """Return XYZ (size², 3) with X + Y + Z = 1 of the table's points, row by row."""
-    first, second = np.meshgrid(*[np.linspace(0, 1, size)] * 2, indexing="ij")
+    first, second = grid_nodes(np.linspace(0, 1, size), 2).T
     # the inverse of ((1 − x)², y / (1 − x))
     x = 1 - np.sqrt(first)
     y = second * np.sqrt(first)
-    return np.stack([x, y, 1 - x - y], axis=-1).reshape(-1, 3)
+    return np.stack([x, y, 1 - x - y], axis=-1)
 
 
-def _spectra(
-    cube: Cube, scene: Scene, unit: Array, share: float
-) -> tuple[Array, float]:
+def _spectra(cube: Cube, scene: Scene, unit: Array) -> tuple[Array, float]:
     """Return spectra (n, N) of lights with the unit XYZ (n, 3), and the fraction of
     real ones that the cube answers.
     """
@@ -218,7 +208,7 @@ def _spectra(
         cube.data.sensor.matrix, range(0, len(cube.data.sensor.wavelengths), 3), axis=1
     )
     brightest = REACH * solid(coarse).ray_fraction(np.zeros_like(rgb), REACH * rgb)
-    rgb *= np.minimum(share * brightest, 1 / rgb.max(axis=1))[:, None]
+    rgb *= np.minimum(SHARE * brightest, 1 / rgb.max(axis=1))[:, None]
     lights = cube.reflectance(rgb, grid()) * scene.power / _reader_sum(scene, rgb)
     beyond = np.flatnonzero(edge < 1)
     far = np.maximum(real[beyond], edge[beyond] + TINY)
@@ -258,7 +248,7 @@ def _stops(cube: Cube, scene: Scene, table: Array) -> float:
     """Mean |log₂| of the ratio of exposures by the table, as readers interpolate it,
     and by the cube.
     """
-    from scipy.interpolate import RegularGridInterpolator
+    from scipy.interpolate import interpn
 
     rgb = decode(np.random.default_rng(SEED).random((SAMPLES, 3)))
     rgb = rgb[solid(cube.data.sensor.matrix).contains(rgb)]
@@ -267,8 +257,8 @@ def _stops(cube: Cube, scene: Scene, table: Array) -> float:
     x, y, _ = (xyz / xyz.sum(axis=1, keepdims=True)).T
     layers = np.exp(-0.5 * ((grid()[:, None] - LAYERS) / LAYER_WIDTH) ** 2)
     axis = np.linspace(0, 1, len(table))
-    read = RegularGridInterpolator((axis, axis), table @ layers)
-    exposure = read(np.clip([(1 - x) ** 2, y / (1 - x)], 0, 1).T)
+    places = np.clip([(1 - x) ** 2, y / (1 - x)], 0, 1).T
+    exposure = interpn((axis, axis), table @ layers, places)
     ratio = xyz.sum(axis=1, keepdims=True) * exposure / (power @ layers)
     return float(np.abs(np.log2(ratio)).mean())
 

@@ -5,20 +5,37 @@ from pathlib import Path
 import numpy as np
 
 from uplift.common.arrays import Array, StrPath
-from uplift.common.errors import OptionError
+from uplift.common.text import pluralise
 from uplift.extras.emission.discs import MIN_RADIUS, touched_bins
 from uplift.extras.emission.file import EmissionData, emission_digest
 from uplift.extras.emission.lattice import DENOMINATOR, ChromaticityLattice
+from uplift.extras.emission.lookup import EmissionTable
 from uplift.extras.export.program import check_form, compose, write_files
 from uplift.extras.export.program_table import Table, concatenate
 from uplift.extras.export.source import comment
 
-STYLES = ("c", "glsl")
-"""Languages of `write_light_program`."""
 BIN_COUNT = 96
 """Bins of each axis of u′v′, from 0 to 1: most touch no lamp, or one."""
 PER_LINE = 27
 """Numbers in a line of a header."""
+
+
+def export(
+    table: EmissionTable, path: Path, style: str, *, force: bool, **settings: str
+) -> str:
+    """Write a program and its table."""
+    written = write_light_program(
+        table.data, path, style=style, form=settings.get("table"), force=force
+    )
+    knots, rings = table.data.lattice.shape
+    size = sum(file.stat().st_size for file in written) / 1e6
+    facts = [
+        pluralise(knots * rings, "node"),
+        pluralise(len(table.lamp_names), "lamp"),
+        f"{size:.1f} MB",
+        *(f"table in {file}" for file in written[1:]),
+    ]
+    return ", ".join(facts)
 
 
 def write_light_program(
@@ -30,13 +47,8 @@ def write_light_program(
     force: bool = False,
 ) -> list[Path]:
     """Write an emission table as a program in C or GLSL, as
-    `uplift.extras.export.write_program` does for a cube.
+    `uplift.extras.export.program.write_program` does for a cube; return the files.
     """
-    if style not in STYLES:
-        raise OptionError(
-            f"emission tables cannot be written in '{style}'",
-            hint=f"use {' or '.join(STYLES)}",
-        )
     path = Path(path)
     form = check_form(style, form)
     table = make_light_table(data)

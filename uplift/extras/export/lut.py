@@ -20,16 +20,19 @@ from uplift.colorimetry.illuminants import Illuminant
 from uplift.colorimetry.observer import display_sensors
 from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Array, StrPath, Values
-from uplift.common.errors import OptionError
 from uplift.common.files import write_text
 from uplift.extras.colour.srgb import decode
+from uplift.extras.export.grid_table import (
+    TableError,
+    check_res,
+    find_errors,
+    grid_nodes,
+)
 from uplift.extras.export.material_error import material_error
-from uplift.extras.export.table_error import TableError, find_errors
 from uplift.lookup.blocks import blockwise
 from uplift.lookup.cube import Cube
 
 SIZE = 33
-MIN_SIZE = 2
 MAX_SIZE = 129
 CLF = "Academy/ASC Common LUT Format"
 CURVE = {"gamma": [2.4, 2.4, 2.4, 1.0], "offset": [0.055, 0.055, 0.055, 0.0]}
@@ -38,15 +41,11 @@ SLOPE = 12.92
 """Slope of its line, which goes on below 0."""
 
 
-def export(cube: Cube, path: Path, style: str, **settings: Any) -> str:
+def export(
+    cube: Cube, path: Path, style: str, *, light: Illuminant, **settings: Any
+) -> str:
     """Write colours under a light."""
-    if "light" not in settings:
-        raise OptionError(
-            "a table of colours under a light needs the light",
-            hint="give an illuminant, such as HP1",
-        )
-    error = write_lut(cube, path=path, **settings)
-    light = settings["light"]
+    error = write_lut(cube, light, path, **settings)
     facts = [f"colours under {light}, {error}"]
     on_materials = material_error(cube, light)
     if on_materials is not None:
@@ -72,11 +71,7 @@ def write_lut(
     colours have its tint. Returns the errors with OpenColorIO's interpolation. The cube
     of a camera is a `ColourError`.
     """
-    if not MIN_SIZE <= res <= MAX_SIZE:
-        raise OptionError(
-            f"res must be from {MIN_SIZE} to {MAX_SIZE}, got {res}",
-            hint=f"{SIZE} is usual",
-        )
+    check_res(res, SIZE, MAX_SIZE)
     sensor = cube.data.sensor
     sensor.require_xyz()
     (lit,) = display_sensors(
@@ -85,10 +80,7 @@ def write_lut(
     # RGB = M XYZ: M adapted to the white of the light, or that of the cube's own
     # illuminant.
     screen = lit if adapt else replace(lit, xyz_to_rgb=sensor.xyz_to_rgb)
-    codes = np.linspace(0, 1, res)
-    # blue varies fastest
-    grid = np.meshgrid(codes, codes, codes, indexing="ij")
-    nodes = np.stack(grid, axis=-1).reshape(-1, 3)
+    nodes = grid_nodes(np.linspace(0, 1, res), 3)
     table = _encode(_relit(cube, nodes, screen)).astype(np.float32)
     transform = _linear_to_linear(table, res)
     title = f"uplift: {sensor.space} under {sensor.illuminant} to {screen.illuminant}"

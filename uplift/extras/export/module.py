@@ -25,9 +25,16 @@ LIBRARY = ("math.h", "stdlib.h", "string.h")
 COMPILED = files("uplift.extras.export") / "source" / "module" / "uplift.wasm"
 
 
-def write_module(path: StrPath, *, force: bool = False) -> None:
+def export(_: None, path: Path, style: str, *, force: bool) -> str:
+    """Write the module."""
+    return write_module(path, force=force)
+
+
+def write_module(path: StrPath, *, force: bool = False) -> str:
     """Write ``uplift.js``, the reader of cube files for JavaScript."""
-    write_text(compose_module(), Path(path), force=force)
+    text = compose_module()
+    write_text(text, Path(path), force=force)
+    return f"reads cube files in JavaScript, {len(text) / 1e3:.0f} kB"
 
 
 def compose_module() -> str:

@@ -1,7 +1,7 @@
-"""The formats that cubes are exported in: one row each, and one function.
+"""The formats that cubes and paints are exported in: one row each, and one function.
 
 Packages of others have rows of their own: an entry point in the group
-``uplift.exports``, named as the format, is an `Export`.
+``uplift.exports``, named as the format, is an `Export` of cubes.
 """
 
 from dataclasses import dataclass
@@ -11,7 +11,7 @@ from uplift.common.extensions import installed
 
 @dataclass(frozen=True)
 class Export:
-    """A format that cubes are written in.
+    """A format that cubes or paints are written in.
 
     Parameters
     ----------
@@ -20,9 +20,9 @@ class Export:
     about : str
         What it is, for the help.
     writer : str
-        ``"module:function"``, imported when it is used. The function takes a `Cube`, a
-        `Path`, the name of the format, ``force``, and the options that are given, and
-        returns a line about what it wrote.
+        ``"module:function"``, imported when it is used. The function takes a `Cube`, or
+        `Paints`, a `Path`, the name of the format, ``force``, and the options that are
+        given, and returns a line about what it wrote.
     options : tuple of str
         Options of ``uplift export`` that it takes, of ``res``, ``light``, ``adapt``,
         ``mode`` and ``table``.
@@ -83,10 +83,45 @@ EXPORTS = {
         ".npz", "all arrays of the cube, for numpy", f"{ROOM}.arrays:export_npz"
     ),
 }
-"""The formats of this package by name."""
+"""The formats of this package for cubes, by name."""
+LIGHT_PROGRAM = (
+    "program that looks up colours of lights",
+    f"{ROOM}.light_program:export",
+    ("table",),
+)
+LIGHT_EXPORTS = {
+    "c": Export(".h", *LIGHT_PROGRAM),
+    "glsl": Export(".glsl", *LIGHT_PROGRAM),
+}
+"""The formats for emission tables, by name."""
+HEADER = ("reader of cube files, in C and C++", f"{ROOM}.runtime:export")
+MODULE = ("reader of cube files, in JavaScript", f"{ROOM}.module:export")
+RUNTIMES = {
+    "h": Export(".h", *HEADER),
+    "hpp": Export(".hpp", *HEADER),
+    "hh": Export(".hh", *HEADER),
+    "js": Export(".js", *MODULE),
+    "mjs": Export(".mjs", *MODULE),
+}
+"""What reads cube files when a program runs, by suffix."""
+PAINT_ROOM = "uplift.extras.paint.paint_exports"
+PAINT_PROGRAM = (
+    "program that mixes the paints at a few wavelengths",
+    f"{PAINT_ROOM}:export_program",
+)
+PAINT_EXPORTS = {
+    "c": Export(".h", *PAINT_PROGRAM),
+    "glsl": Export(".glsl", *PAINT_PROGRAM),
+    "hlsl": Export(".hlsl", *PAINT_PROGRAM),
+    "cube": Export(
+        ".cube", "table of two paints on grey grounds", f"{PAINT_ROOM}:export_lut"
+    ),
+    "html": Export(".html", "page that mixes the paints", f"{PAINT_ROOM}:export_page"),
+}
+"""The formats for paints, by name."""
 
 
 def known_exports() -> dict[str, Export]:
-    """Return the formats of this package, and those of others, by name."""
+    """Return the formats for cubes of this package, and those of others, by name."""
     outside = {name: load() for name, load in installed("exports").items()}
     return EXPORTS | {name: outside[name] for name in outside.keys() - EXPORTS.keys()}

@@ -5,8 +5,9 @@ number of coefficients, and of the reader of files in ``source/runtime/``.
 """
 
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from decimal import Decimal
 from itertools import product
 from pathlib import Path
 from string import Template
@@ -108,15 +109,22 @@ READ = (
 """Arrays of a cube file that lookups need."""
 TYPES = ("float64", "float32", "uint8", "int32", "int16", "uint32")
 """Types of arrays, in the order of the reader."""
-ROUNDS = 64
-"""Steps of SHA-256 for a block."""
+LARGEST_PRIME = 311
+"""The last of 64, one for each step of SHA-256."""
 PER_LINE = 8
 NUMBERS_OF_WARP = 6
 
 
-def write_header(path: StrPath, *, force: bool = False) -> None:
+def export(_: None, path: Path, style: str, *, force: bool) -> str:
+    """Write the header."""
+    return write_header(path, force=force)
+
+
+def write_header(path: StrPath, *, force: bool = False) -> str:
     """Write ``uplift.h``, the reader of cube files for programs in C and C++."""
-    write_text(compose_header(), Path(path), force=force)
+    text = compose_header()
+    write_text(text, Path(path), force=force)
+    return f"reads cube files in C and C++, {len(text) / 1e3:.0f} kB"
 
 
 def compose_header(kernels: Sequence[Kernel] = KERNELS) -> str:
@@ -139,15 +147,15 @@ def compose_header(kernels: Sequence[Kernel] = KERNELS) -> str:
 
 def _reader_words() -> dict[str, Any]:
     """Return the words of the reader that follow from the format and the models."""
-    primes = _primes(ROUNDS)
+    primes = list(filter(_is_prime, range(2, LARGEST_PRIME + 1)))
     warps = []
     for name, terms in WARPS.items():
         numbers = [number for term in terms for number in term]
         numbers += [0.0] * (NUMBERS_OF_WARP - len(numbers))
         warps.append(f'{{"{name}", {{{", ".join(map(repr, numbers))}}}}}')
     return {
-        "constants": _words_of_hash(_root_fraction(prime, 3) for prime in primes),
-        "start": _words_of_hash(_root_fraction(prime, 2) for prime in primes[:8]),
+        "constants": _hash_words(primes, 3),
+        "start": _hash_words(primes[:8], 2),
         "features": ", ".join(f'"{feature}"' for feature in FEATURES),
         "arrays": ",\n    ".join(map(_array_word, READ)),
         "schema": ",".join(map(_schema_row, READ)),
@@ -195,29 +203,15 @@ def _kernel() -> str:
     return re.sub(r"\bup_(\w+)", r"UP_NAME(\1)", text)
 
 
-def _words_of_hash(words: Iterable[int]) -> str:
-    """Format the constants of SHA-256, a few on a line."""
-    texts = [f"0x{word:08x}" for word in words]
+def _hash_words(primes: Sequence[int], degree: int) -> str:
+    """Format the first 32 bits of the fractions of roots, the constants of SHA-256
+    (FIPS 180-4, 4.2.2, 5.3.3), a few on a line.
+    """
+    roots = [Decimal(prime) ** (1 / Decimal(degree)) for prime in primes]
+    texts = [f"0x{int(root % 1 * 2**32):08x}" for root in roots]
     rows = [texts[first : first + PER_LINE] for first in range(0, len(texts), PER_LINE)]
     return ",\n".join("    " + ", ".join(row) for row in rows)
 
 
-def _primes(count: int) -> list[int]:
-    primes: list[int] = []
-    number = 2
-    while len(primes) < count:
-        if all(number % prime for prime in primes):
-            primes.append(number)
-        number += 1
-    return primes
-
-
-def _root_fraction(number: int, degree: int) -> int:
-    """Return the first 32 bits of the fraction of a root (FIPS 180-4, 4.2.2, 5.3.3)."""
-    scaled = number << 32 * degree
-    root = round(number ** (1 / degree) * 2**32)
-    while root**degree > scaled:
-        root -= 1
-    while (root + 1) ** degree <= scaled:
-        root += 1
-    return root % 2**32
+def _is_prime(number: int) -> bool:
+    return all(number % divisor for divisor in range(2, number))

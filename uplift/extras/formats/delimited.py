@@ -49,13 +49,8 @@ def read(document: Document) -> Measurements:
     comments = [
         line.strip("# \t") for line in document.lines if line.lstrip().startswith("#")
     ]
-    try:
-        delimiter = _delimiter(document)
-        rows = _labelled(list(_split(document, delimiter)))
-    except (csv.Error, ValueError) as error:
-        raise document.location.error(
-            f"not a readable table: {error}", LAYOUT
-        ) from None
+    delimiter, rows = split_rows(document)
+    rows = _labelled(rows)
     numbers = [row for row in rows if is_value(row[0].text)]
     if len(numbers) < 2 or max(map(len, numbers)) > 1:
         may_group = delimiter in ",\t" and bool(QUOTED.search(document.text))
@@ -67,6 +62,20 @@ def read(document: Document) -> Measurements:
     name, rows = _with_wavelengths(document, title, numbers)
     found = read_grid(Grid(rows, document.location, comments), document.stem)
     return replace(found, notes=(*found.notes, f"wavelengths: those of {name}"))
+
+
+def split_rows(document: Document) -> tuple[str, list[Row]]:
+    """Return the delimiter of a table, and its rows that are neither blank nor
+    comments.
+    """
+    lines = document.lines
+    try:
+        delimiter = _delimiter(lines)
+        return delimiter, list(_split(lines, delimiter))
+    except (csv.Error, ValueError) as error:
+        raise document.location.error(
+            f"not a readable table: {error}", LAYOUT
+        ) from None
 
 
 def _labelled(rows: list[Row]) -> list[Row]:
@@ -143,17 +152,16 @@ def text(atlas: Atlas, _: Header) -> str:
     return csv_text(["name", *first.wavelengths.tolist()], rows, quote_text=True)
 
 
-def _delimiter(document: Document) -> str:
+def _delimiter(lines: Sequence[str]) -> str:
     """Return the delimiter that the file states, or that splits off most numbers."""
-    if stated := SEPARATOR.fullmatch(document.lines[0].strip(" \ufeff\"'")):
+    if stated := SEPARATOR.fullmatch(lines[0].strip(" \ufeff\"'")):
         return stated[1]
-    return find_delimiter(document.lines[:SAMPLE_ROWS])
+    return find_delimiter(lines[:SAMPLE_ROWS])
 
 
-def _split(document: Document, delimiter: str) -> Iterator[Row]:
+def _split(lines: Sequence[str], delimiter: str) -> Iterator[Row]:
     """Yield the rows that are neither blank nor comments."""
     line = 1
-    lines = document.lines
     reader = csv.reader(
         (f"{text}\n" for text in lines),
         delimiter=delimiter,

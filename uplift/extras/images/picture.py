@@ -6,11 +6,11 @@ from typing import Any
 import numpy as np
 
 from uplift.colorimetry.sensor import Sensor
-from uplift.common.arrays import Floats, Mask, StrPath, Values
+from uplift.common.arrays import Floats, Mask, StrPath
 from uplift.common.errors import UpliftWarning
 from uplift.extras.images.channels import coloured_parts
 from uplift.extras.images.counts import Counts
-from uplift.extras.images.image import Part, open_image
+from uplift.extras.images.image import open_image
 from uplift.extras.images.reader import SurfaceReader
 
 
@@ -44,46 +44,31 @@ def read_picture(
     with open_image(path) as image:
         part, channels = coloured_parts(image)[0]
         decode = reader.decoder(part)
-        mean = _Reducer(part, max_side, 3)
-        opacities = _Reducer(part, max_side, 1)
-        shown = _Reducer(part, max_side, 1)
+        width = part.window.width
+        height = part.window.height
+        step = -(-max(width, height) // max_side)
+        columns = np.arange(0, width, step)
+        rows = np.arange(height) // step
+        # of colours times alpha, alpha, and visible pixels
+        sums = np.zeros((rows[-1] + 1, len(columns), 5))
         counts = Counts()
         for first, band in image.bands(part):
             rgb, decoded = decode(channels.straight(band))
-            shown.add(first, channels.visible(band)[..., None])
-            opacity = channels.opacity(band)
-            if opacity is not None:
-                opacities.add(first, opacity)
-            mean.add(first, rgb if opacity is None else rgb * opacity)
             counts += decoded
+            visible = channels.visible(band)[..., None]
+            opacity = channels.opacity(band)
+            weight = np.ones_like(rgb[..., :1]) if opacity is None else opacity
+            values = np.concatenate([rgb * weight, weight, visible], axis=-1)
+            in_columns = np.add.reduceat(values, columns, axis=1, dtype=float)
+            np.add.at(sums, rows[first : first + len(band)], in_columns)
         warnings = (*counts.warnings(path), *reader.warnings(image))
-    visible = shown.result()[..., 0] > 0
+    widths = np.diff(np.append(columns, width))
+    pixels = np.bincount(rows)[:, None, None] * widths[:, None]
+    means: Floats = (sums / pixels).astype(np.float32)
+    rgb = means[..., :3]
+    weights = means[..., 3:4]
+    visible = means[..., 4] > 0
     if channels.alpha is None:
-        return Picture(mean.result(), None, mean.step, warnings, visible)
-    weights = opacities.result()
-    colours = np.minimum(mean.result() / np.where(weights > 0, weights, 1), 1)
-    return Picture(colours.astype(np.float32), weights, mean.step, warnings, visible)
-
-
-class _Reducer:
-    """Means of squares of pixels, from bands of rows."""
-
-    def __init__(self, part: Part, max_side: int, channels: int) -> None:
-        width = part.window.width
-        height = part.window.height
-        self.step = -(-max(width, height) // max_side)
-        self._columns = np.arange(0, width, self.step)
-        self._total = np.zeros((-(-height // self.step), len(self._columns), channels))
-        self._rows = np.bincount(np.arange(height) // self.step)
-        self._widths = np.diff(np.append(self._columns, width))
-
-    def add(self, first: int, rgb: Values) -> None:
-        """Add rows (k, width, channels) from row ``first`` on."""
-        sums = np.add.reduceat(rgb, self._columns, axis=1, dtype=float)
-        np.add.at(self._total, (first + np.arange(len(rgb))) // self.step, sums)
-
-    def result(self) -> Floats:
-        """Return the means (height, width, channels)."""
-        return (
-            self._total / (self._rows[:, None, None] * self._widths[:, None])
-        ).astype(np.float32)
+        return Picture(rgb, None, step, warnings, visible)
+    straight = np.minimum(rgb / np.where(weights > 0, weights, 1), 1)
+    return Picture(straight.astype(np.float32), weights, step, warnings, visible)

@@ -77,7 +77,12 @@ class Reader(ABC):
     def settings(self) -> dict[str, str]:
         """Description for the header of textures."""
         space = {} if self.space is None else {"space": self.space}
-        return {"encoding": self.encoding, **space}
+        return {"encoding": self.encoding, **self._mapping, **space}
+
+    @property
+    def _mapping(self) -> dict[str, str]:
+        """Gamut mapping among the settings: colours are not mapped by default."""
+        return {}
 
     def channels(self, found: ColourChannels) -> ColourChannels:
         """How the colour channels that a part has are read: by default as found."""
@@ -119,19 +124,20 @@ class Reader(ABC):
         """Return warnings about parts whose space is not known, by unusable statements
         and assumptions, and about spectra, in place of which R, G and B are read.
         """
-        problems = dict[str, str]()
+        assumed = {}
         if self.space is None:
-            for part in image.parts:
-                problems[self._assumption(part)] = "colour-space-assumed"
+            assumed = dict.fromkeys(map(self._assumption, image.parts))
+        warnings = [
+            UpliftWarning(problem, code="colour-space-assumed", path=image.path)
+            for problem in assumed
+            if problem
+        ]
         names = chain.from_iterable(part.channels for part in image.parts)
         if any(map(SPECTRAL.fullmatch, names)):
             problem = "the spectra of the image are not used: its R, G and B are"
-            problems[problem] = "spectra-not-used"
-        return tuple(
-            UpliftWarning(problem, code=code, path=image.path)
-            for problem, code in problems.items()
-            if problem
-        )
+            unused = UpliftWarning(problem, code="spectra-not-used", path=image.path)
+            warnings.append(unused)
+        return tuple(warnings)
 
     def _assumption(self, part: Part) -> str:
         """Return what is assumed about the space of a part, empty if nothing is."""
@@ -210,10 +216,8 @@ class SurfaceReader(Reader):
         check_method(self.out_of_gamut)
 
     @property
-    def settings(self) -> dict[str, str]:
-        """Description for the header of textures."""
-        encoding, *space = super().settings.items()
-        return dict([encoding, ("out_of_gamut", self.out_of_gamut), *space])
+    def _mapping(self) -> dict[str, str]:
+        return {"out_of_gamut": self.out_of_gamut}
 
     def decoder(self, part: Part) -> "Decoder":
         """Make the decoder of a part.

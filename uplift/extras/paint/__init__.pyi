@@ -1,8 +1,9 @@
-from .coats import Ingredients as Ingredients
-from .coats import Medium as Medium
-from .coats import make_coat as make_coat
-from .coats import mix as mix
+from .coats import Dyes as Dyes
+from .coats import Pigments as Pigments
+from .duntley import DuntleyPaints as DuntleyPaints
 from .optics import Surface as Surface
+from .optics import add_lights as add_lights
+from .optics import stack_filters as stack_filters
 from .overpaint import overpainter as overpainter
 from .paint_advice import PaintAdvice as PaintAdvice
 from .paint_advice import advise_samples as advise_samples
@@ -14,6 +15,7 @@ from .paints import Paints as Paints
 from .paints import strengths as strengths
 from .paints_file import read_paints as read_paints
 from .paints_file import write_paints as write_paints
+from .pigments import Pigment as Pigment
 from .pigments import dispersive as dispersive
 from .recipes import PaintRecipe as PaintRecipe
 from .recipes import PaintTarget as PaintTarget

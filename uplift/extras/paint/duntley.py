@@ -29,8 +29,15 @@ from numpy.typing import ArrayLike
 from uplift.atlas.document import read_document
 from uplift.atlas.formats import read_any
 from uplift.common.arrays import Array, StrPath
-from uplift.extras.formats.measurements import Measurements
-from uplift.extras.paint.optics import DirectedLayer
+from uplift.extras.paint.optics import (
+    NO_SURFACE,
+    Coat,
+    DirectedLayer,
+    Surface,
+    as_shares,
+    check_thickness,
+    weighted_sum,
+)
 from uplift.extras.paint.pigments import Pigment
 
 # Relative difference of μ and γ below which the mean of both sides is taken; its error
@@ -90,6 +97,30 @@ def duntley_layer(beam: Flux, diffuse: Flux, thickness: float) -> DirectedLayer:
     return DirectedLayer(reflectance, transmittance, layer)
 
 
+@dataclass(frozen=True, eq=False)
+class DuntleyPaints:
+    """Paints by Duntley's constants (n, 6, N), in the order of `CONSTANTS`."""
+
+    constants: Array
+
+    def coat(
+        self,
+        parts: ArrayLike,
+        thickness: float | None = None,
+        surface: Surface = NO_SURFACE,
+    ) -> Coat:
+        """Make a coat, whose constants are means by parts (..., n); see
+        `uplift.extras.paint.coats.Pigments.coat`. It is one unit thick by default.
+        """
+        check_thickness(thickness)
+        flat = self.constants.reshape(len(self.constants), -1)
+        mixed = weighted_sum(flat, as_shares(parts))
+        fluxes = np.moveaxis(mixed.reshape(*mixed.shape[:-1], 6, -1), -2, 0)
+        depth = 1.0 if thickness is None else thickness
+        layer = duntley_layer(Flux(*fluxes[:3]), Flux(*fluxes[3:]), depth)
+        return Coat(layer, surface)
+
+
 def read_constants(path: StrPath, wavelengths: Array) -> Array:
     """Read Duntley's constants (6, N) of a paint, in the order of `CONSTANTS`, linear
     between the samples of a table.
@@ -99,8 +130,8 @@ def read_constants(path: StrPath, wavelengths: Array) -> Array:
     """
     document = read_document(path)
     _, content = read_any(document)
-    samples = {}
-    for spectrum in content.spectra if isinstance(content, Measurements) else ():
+    samples = dict[str, Array]()
+    for spectrum in getattr(content, "spectra", ()):
         nm = np.asarray(spectrum.wavelengths, dtype=float)
         values = np.asarray(spectrum.values, dtype=float)
         if not (np.isfinite(values) & (values >= 0)).all():
@@ -113,19 +144,16 @@ def read_constants(path: StrPath, wavelengths: Array) -> Array:
         samples[spectrum.name] = np.interp(wavelengths, nm[order], values[order])
     missing = [name for name in CONSTANTS if name not in samples]
     if missing:
-        problem = (
-            f"a table of Duntley's constants must have {', '.join(CONSTANTS)}; "
-            f"{', '.join(missing)} missing"
-        )
         raise document.location.error(
-            problem, "write a column for each, and one of wavelengths in nm"
+            f"a table of Duntley's constants must have {', '.join(CONSTANTS)}; "
+            f"{', '.join(missing)} missing",
+            "write a column for each, and one of wavelengths in nm",
         )
-    for total, parts in (("S'", ("B'", "F'")), ("S", ("B", "F"))):
-        if total in samples and not np.allclose(
-            samples[total], sum(samples[part] for part in parts), rtol=1e-3
-        ):
+    for total, first, second in (("S'", "B'", "F'"), ("S", "B", "F")):
+        parts = samples[first] + samples[second]
+        if total in samples and not np.allclose(samples[total], parts, rtol=1e-3):
             raise document.location.error(
-                f"{total} must be {' + '.join(parts)}",
+                f"{total} must be {first} + {second}",
                 f"correct {total} or leave it out",
             )
     return np.stack([samples[name] for name in CONSTANTS])

@@ -17,6 +17,7 @@ from uplift.common.arrays import Array, as_array
 from uplift.common.errors import OptionError
 
 TINY = np.finfo(float).tiny
+MAX_THICKNESS = 1e9  # as it is multiplied with other numbers
 
 
 def as_amounts(parts: ArrayLike) -> Array:
@@ -43,6 +44,31 @@ def as_shares(parts: ArrayLike) -> Array:
         )
     relative = array / largest  # a sum of huge parts would overflow
     return relative / relative.sum(axis=-1, keepdims=True)
+
+
+def ramp(parts: ArrayLike, steps: int) -> Array:
+    """Return proportions (steps, n) from the first component alone, through the others,
+    to the last alone.
+
+    ``parts`` (n,) are the amounts at which each component stands alone. The shape is
+    (0, 1) for a single component.
+
+    >>> ramp([2, 1], 3).tolist()
+    [[2.0, 0.0], [1.0, 0.5], [0.0, 1.0]]
+    """
+    ends = np.diag(as_amounts(parts))
+    if len(ends) < 2:
+        return np.empty((0, len(ends)))
+    positions = np.linspace(0, len(ends) - 1, steps)
+    stops = np.arange(len(ends))
+    return np.stack([np.interp(positions, stops, column) for column in ends.T], axis=-1)
+
+
+def check_thickness(thickness: float | None) -> None:
+    """Raise `OptionError` for an impossible thickness; None is opaque."""
+    if thickness is not None and not 0 <= thickness <= MAX_THICKNESS:
+        problem = f"thickness must be in [0, {MAX_THICKNESS:g}], got {thickness}"
+        raise OptionError(problem, hint="1 is the unit")
 
 
 def weighted_sum(spectra: ArrayLike, weights: Array) -> Array:
@@ -262,5 +288,28 @@ class Surface:
         measured = np.asarray(measured, dtype=float)
         return beneath_surface(measured, self.outside, self.inside)
 
+    def beneath(self, measured: ArrayLike) -> Array:
+        """Return the reflectance beneath the surface, in [0, 1]: what is darker than
+        the surface alone is black.
+        """
+        return np.clip(self.remove(measured), 0, 1)
+
 
 NO_SURFACE = Surface()
+
+
+@dataclass(frozen=True, eq=False)
+class Coat:
+    """A layer of paint or dye beneath the surface of its vehicle."""
+
+    layer: Layer
+    surface: Surface = NO_SURFACE
+
+    def over(self, ground: ArrayLike) -> Array:
+        """Return the reflectance (..., N) on a ground (..., N), both
+        surface included.
+        """
+        below = self.surface.beneath(ground)
+        return self.surface.apply(
+            self.layer.over(below), self.layer.diffuse.over(below)
+        )

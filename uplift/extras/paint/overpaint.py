@@ -17,7 +17,7 @@ from uplift.extras.images.converter import (
 )
 from uplift.extras.images.counts import Counts
 from uplift.extras.images.reader import PAST_TENSE, SurfaceReader
-from uplift.extras.paint.coats import Coat
+from uplift.extras.paint.optics import Coat
 from uplift.lookup.blocks import blockwise
 from uplift.lookup.cube import Cube
 

@@ -6,7 +6,8 @@ leave of it from one step of Kalman's update. The sample that leaves least comes
 then the best one in addition to it, and so on.
 """
 
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, replace
 from itertools import combinations
 from typing import Any
 
@@ -14,11 +15,10 @@ import numpy as np
 
 from uplift.colorimetry.delta_e import delta_e_2000_weights
 from uplift.common.arrays import Array
-from uplift.extras.paint.paint_fit import PaintFit
+from uplift.extras.paint.paint_fit import FitModel, PaintFit
 from uplift.extras.paint.paint_samples import MeasuredSpectra, PaintSamples
+from uplift.extras.paint.paints import TINT_PARTS
 
-TINT_PARTS = 4
-"""Parts of white to one of paint in a tint."""
 KNOWN = 0.02
 """Difference of shares below which a sample is measured already."""
 
@@ -71,41 +71,45 @@ def advise_samples(fit: PaintFit, count: int = 5) -> PaintAdvice:
         Mean standard deviation in units of ΔE00 of the colours of mixtures of two
         paints, or of the only one, now and after each sample.
     """
-    pairs = _pairs(fit.samples)
-    names, candidates = _candidates(fit.samples)
-    weights = delta_e_2000_weights(np.asarray(fit.model.colours(fit.optimum, pairs)))
-    colours = _jacobian(fit, pairs, "colours").reshape(len(pairs), 3, -1)
-    aims = (weights @ colours).reshape(3 * len(pairs), -1)
-    rows = _measurements(fit, candidates)
+    samples = fit.samples
+    alone = np.eye(len(samples.paints))
+    pairs = [(first + second) / 2 for first, second in combinations(alone, 2)]
+    aimed = _opaque(samples, pairs or alone)
+    weights = delta_e_2000_weights(np.asarray(fit.model.colours(fit.optimum, aimed)))
+    slopes = _jacobian(fit, FitModel.colours, aimed)
+    aims = (weights @ slopes).reshape(3 * len(aimed), -1)
+    candidates = _candidates(samples)
+    rows = _measurements(fit, _opaque(samples, candidates.values()))
+    left = dict(zip(candidates, rows, strict=True))
     covariance = fit.covariance
+    error = _mean_error((aims.T * (covariance @ aims.T)).sum(axis=0))
     advice = list[NextSample]()
-    left = list(range(len(names)))
     while left and len(advice) < count:
         # C Hᵀ (H C Hᵀ + 1)⁻¹ H C is what a measurement with the Jacobian H takes off C.
         projected = covariance @ aims.T
         variances = (aims.T * projected).sum(axis=0)
-        roots = [_gain_root(covariance, rows[row]) @ rows[row] for row in left]
-        taken = [((root @ projected) ** 2).sum(axis=0) for root in roots]
-        errors = [_mean_error(variances - reduction) for reduction in taken]
-        best = int(np.argmin(errors))
-        advice.append(NextSample(names[left[best]], errors[best]))
+        roots = {name: _gain_root(covariance, row) @ row for name, row in left.items()}
+        errors = {
+            name: _mean_error(variances - ((root @ projected) ** 2).sum(axis=0))
+            for name, root in roots.items()
+        }
+        best = min(errors, key=errors.__getitem__)
+        advice.append(NextSample(best, errors[best]))
         gain = roots[best] @ covariance
         covariance = covariance - gain.T @ gain
         del left[best]
-    variances = (aims.T * (fit.covariance @ aims.T)).sum(axis=0)
-    return PaintAdvice(_mean_error(variances), tuple(advice))
+    return PaintAdvice(error, tuple(advice))
 
 
 def _measurements(fit: PaintFit, candidates: PaintSamples) -> Array:
     """Return the Jacobians (n, r, d) of candidates, in units of the noise, measured as
     the samples are.
     """
-    name = "colours"
+    function: Callable[..., Any] = FitModel.colours
     if isinstance(fit.samples.measured, MeasuredSpectra):
-        name = "reflectances"
-    predicted = np.asarray(getattr(fit.model, name)(fit.optimum, candidates))
-    spread = fit.noise.spread(predicted)
-    return _jacobian(fit, candidates, name) / spread[..., None]
+        function = FitModel.reflectances
+    spread = fit.noise.spread(np.asarray(function(fit.model, fit.optimum, candidates)))
+    return _jacobian(fit, function, candidates) / spread[..., None]
 
 
 def _gain_root(covariance: Array, row: Array) -> Array:
@@ -120,68 +124,56 @@ def _mean_error(variances: Array) -> float:
     return float(np.sqrt(sums).mean())
 
 
-def _jacobian(fit: PaintFit, samples: PaintSamples, name: str) -> Array:
+def _jacobian(
+    fit: PaintFit, function: Callable[..., Any], samples: PaintSamples
+) -> Array:
+    """Return the Jacobian (n, r, d) of what a function of the model predicts."""
     import jax
 
     from uplift.common.compilation import compiled
 
-    function = getattr(fit.model, name)
-
     def predict(z: Any) -> Any:
-        return function(z, samples)
+        return function(fit.model, z, samples)
 
     with jax.enable_x64(True):
         return np.asarray(compiled(jax.jacfwd(predict))(fit.optimum))
 
 
-def _pairs(samples: PaintSamples) -> PaintSamples:
-    """Return mixtures of any two paints in equal parts, or the only paint."""
-    count = len(samples.paints)
-    if count == 1:
-        return _opaque(samples, np.eye(1))
-    pairs = np.array(list(combinations(range(count), 2)))
-    return _opaque(samples, np.eye(count)[pairs].mean(axis=1))
-
-
-def _opaque(samples: PaintSamples, shares: Array) -> PaintSamples:
+def _opaque(samples: PaintSamples, rows: Iterable[Array]) -> PaintSamples:
+    """Return opaque samples with rows of shares (P,) that are not measured."""
+    shares = np.reshape(list(rows), (-1, len(samples.paints)))
     size = len(shares)
-    return PaintSamples(
-        ("",) * size,
-        samples.paints,
-        shares,
-        np.full(size, np.inf),
-        np.ones((size, len(samples.wavelengths))),
-        samples.wavelengths,
-        MeasuredSpectra(np.empty((size, 0))),
+    return replace(
+        samples,
+        names=("",) * size,
+        shares=shares,
+        thickness=np.full(size, np.inf),
+        grounds=np.ones((size, len(samples.wavelengths))),
     )
 
 
-def _candidates(samples: PaintSamples) -> tuple[list[str], PaintSamples]:
-    """Return the opaque samples that are not measured: each paint alone, its tint with
-    the lightest paint, and mixtures of two in equal parts.
+def _candidates(samples: PaintSamples) -> dict[str, Array]:
+    """Return the shares of opaque samples that are not measured, by name: each paint
+    alone, its tint with the lightest paint, and mixtures of two in equal parts.
     """
-    count = len(samples.paints)
-    lightest = _lightest(samples)
+    names = samples.paints
+    alone = np.eye(len(names))
+    white = _lightest(samples)
     shares = dict[str, Array]()
-    for paint, name in enumerate(samples.paints):
-        shares[name] = np.eye(count)[paint]
-        if paint != lightest:
-            tint = f"1 {name} : {TINT_PARTS} {samples.paints[lightest]}"
-            row = np.zeros(count)
-            row[paint] = 1
-            row[lightest] = TINT_PARTS
-            shares[tint] = row / row.sum()
-    for first, second in combinations(range(count), 2):
-        name = f"1 {samples.paints[first]} : 1 {samples.paints[second]}"
-        shares[name] = np.eye(count)[[first, second]].mean(axis=0)
-    opaque = samples.shares[samples.is_opaque]
-    names = []
-    for name, row in shares.items():
-        distance = np.abs(opaque - row).max(axis=1).min(initial=1.0)
-        if distance > KNOWN:
-            names.append(name)
-    rows = np.array([shares[name] for name in names]).reshape(-1, count)
-    return names, _opaque(samples, rows)
+    for name, row in zip(names, alone, strict=True):
+        shares[name] = row
+        if name != names[white]:
+            tint = (row + TINT_PARTS * alone[white]) / (1 + TINT_PARTS)
+            shares[f"1 {name} : {TINT_PARTS} {names[white]}"] = tint
+    for first, second in combinations(range(len(names)), 2):
+        pair = (alone[first] + alone[second]) / 2
+        shares[f"1 {names[first]} : 1 {names[second]}"] = pair
+    known = samples.shares[samples.is_opaque]
+    return {
+        name: row
+        for name, row in shares.items()
+        if np.abs(known - row).max(axis=1).min(initial=1.0) > KNOWN
+    }
 
 
 def _lightest(samples: PaintSamples) -> int:

@@ -71,12 +71,12 @@ MAX_OTHERS = 2
 
 @dataclass(frozen=True)
 class Columns:
-    """Positions of columns."""
+    """Positions of columns; those that a table has not are −1."""
 
     name: int
-    thickness: int | None
-    ground: int | None
-    colour: int | None
+    thickness: int
+    ground: int
+    colour: int
     paints: dict[str, int]
     unused: tuple[str, ...]
     """Labels of columns that are not used."""
@@ -91,9 +91,9 @@ def find_columns(
     labels = [plain_label(text) for text in head]
     words = [_words(text) for text in head]
     cells = list(zip(*rows, strict=True)) or [("",)] * len(head)
+    filled = [at for at, column in enumerate(cells) if any(column)]
     names = [labels.index(label) for label in NAME_LABELS if label in labels] or [0]
     colours = [at for at, label in enumerate(labels) if label in COLOUR_LABELS]
-    filled = [at for at, column in enumerate(cells) if any(column)]
     films = [at for at in filled if THICKNESS.fullmatch(words[at])]
     grounds = [at for at in filled if GROUND.fullmatch(words[at])]
     for repeated in (*films[1:], *grounds[1:]):
@@ -123,14 +123,8 @@ def find_columns(
             )
         paints[label] = at
     unused = [head[at] for at in columns if at not in paints.values()]
-    return Columns(
-        names[0],
-        next(iter(films), None),
-        next(iter(grounds), None),
-        next(iter(colours), None),
-        paints,
-        tuple(unused),
-    )
+    thickness, ground, colour = ((*at, -1)[0] for at in (films, grounds, colours))
+    return Columns(names[0], thickness, ground, colour, paints, tuple(unused))
 
 
 def _amounts(cells: Sequence[str]) -> Array:

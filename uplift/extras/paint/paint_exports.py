@@ -1,7 +1,5 @@
 """The formats that paints are exported in: one function each."""
 
-from collections.abc import Callable
-from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -13,8 +11,7 @@ from uplift.common.files import write_text
 from uplift.common.text import pluralise
 from uplift.extras.colour.srgb import decode, encode
 from uplift.extras.export.lut import cube_text
-from uplift.extras.paint.coats import Medium, coat_of_pigments
-from uplift.extras.paint.paint_page import write_page
+from uplift.extras.paint.paint_page import page
 from uplift.extras.paint.paint_program import describe_errors, write_program
 from uplift.extras.paint.paints import Paints, check_unit
 
@@ -68,8 +65,8 @@ def _colours(paints: Paints, share: float, axis: Array, thickest: float) -> Arra
     grounds = decode(axis)[:, None] * np.ones(len(paints.wavelengths))
     films = []
     for depth in axis:
-        medium = Medium(thickest * depth**2, paints.surface)
-        coat = coat_of_pigments(paints.pigments, [1 - share, share], medium)
+        thickness = thickest * depth**2
+        coat = paints.pigments.coat([1 - share, share], thickness, paints.surface)
         films.append(coat.over(grounds))
     return encode(paints.sensor.rgb(np.stack(films)))
 
@@ -107,36 +104,5 @@ def hiding_thickness(paints: Paints, parts: Array) -> float:
 
 def export_page(paints: Paints, path: Path, style: str, *, force: bool) -> str:
     """Write a page with the paints as tubes, which mixes them and finds recipes."""
-    write_page(paints, path, force=force)
+    write_text(page(paints), path, force=force)
     return f"page of {pluralise(len(paints), 'paint')}"
-
-
-@dataclass(frozen=True)
-class PaintExport:
-    """A format that paints are written in.
-
-    Parameters
-    ----------
-    suffix : str
-        Suffix of its files.
-    about : str
-        What it is, for the help.
-    write : callable
-        Takes the paints, a path, the name of the format and ``force``, and returns a
-        line about what it wrote.
-    """
-
-    suffix: str
-    about: str
-    write: Callable[..., str]
-
-
-PROGRAM = ("program that mixes the paints at a few wavelengths", export_program)
-PAINT_EXPORTS = {
-    "c": PaintExport(".h", *PROGRAM),
-    "glsl": PaintExport(".glsl", *PROGRAM),
-    "hlsl": PaintExport(".hlsl", *PROGRAM),
-    "cube": PaintExport(".cube", "table of two paints on grey grounds", export_lut),
-    "html": PaintExport(".html", "page that mixes the paints", export_page),
-}
-"""The formats by name."""

@@ -29,6 +29,7 @@ from uplift.extras.paint.paint_prior import STRENGTH_SPREAD, PaintPrior, paint_p
 from uplift.extras.paint.paint_samples import (
     MeasuredColours,
     MeasuredSpectra,
+    Noise,
     PaintSamples,
 )
 from uplift.extras.paint.paints import Paints
@@ -56,27 +57,11 @@ LEAST_FREEDOM = 0.05
 """Smallest fraction of the measured values that the unknowns leave free."""
 MAX_VARIABLES = 6000
 """Largest number of unknowns, whose square must fit in memory."""
+ODD = 3.0
+"""ΔE00, in that of the median sample, from which a sample may be wrong."""
 
 Function = Callable[[Array], Any]
 """A compiled function of the variables (d,)."""
-
-
-@dataclass(frozen=True)
-class Noise:
-    """Standard deviation of measured values: of all, and relative to the value."""
-
-    absolute: float
-    relative: float
-
-    def spread(self, values: Array) -> Array:
-        """Return the standard deviation of values."""
-        return np.hypot(self.absolute, self.relative * values)
-
-
-SPECTRA_NOISE = Noise(0.002, 0.005)
-"""Smallest noise of reflectances."""
-COLOUR_NOISE = Noise(0.5, 0.0)
-"""Smallest noise of L*, a* and b* of colours."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -109,6 +94,15 @@ class PaintFit:
     optimum: Array
     covariance: Array
     model: "FitModel"
+
+    @property
+    def doubtful(self) -> list[int]:
+        """Samples that fit so much worse than the median one that their parts or
+        measurements may be wrong, the worst first.
+        """
+        limit = max(ODD * float(np.median(self.delta_e)), 1.0)
+        order = np.argsort(-self.delta_e)
+        return order[self.delta_e[order] > limit].tolist()
 
 
 @dataclass(frozen=True, eq=False)
@@ -252,7 +246,7 @@ def _fit(
     from uplift.common.compilation import compiled
 
     values = samples.measured.values
-    noise = _smallest_noise(samples)
+    noise = samples.measured.noise
     z = np.zeros(model.count)
 
     @compiled
@@ -287,14 +281,9 @@ def _fit(
         warn(UpliftWarning(problem, code="paints-not-converged", hint=hint))
     paints = _paints(samples, model, z, covariance)
     predicted = np.asarray(model.colours(z, samples))
-    delta_e = delta_e_2000(predicted, _measured_lab(samples, model))
+    colours = _lab(samples.measured.rgb(model.sensor), model.sensor)
+    delta_e = delta_e_2000(predicted, np.asarray(colours))
     return PaintFit(paints, samples, delta_e, noise, z, covariance, model)
-
-
-def _smallest_noise(samples: PaintSamples) -> Noise:
-    if isinstance(samples.measured, MeasuredSpectra):
-        return SPECTRA_NOISE
-    return COLOUR_NOISE
 
 
 def _estimate_noise(samples: PaintSamples, squares: Array) -> Noise:
@@ -303,7 +292,7 @@ def _estimate_noise(samples: PaintSamples, squares: Array) -> Noise:
     """
     from scipy.optimize import nnls
 
-    smallest = _smallest_noise(samples)
+    smallest = samples.measured.noise
     constant = np.ones(squares.size)
     relative = samples.measured.values.ravel() ** 2 * (smallest.relative > 0)
     variances, _ = nnls(np.stack([constant, relative], axis=1), squares.ravel())
@@ -382,13 +371,6 @@ def _relative_errors(
         log_S = log_S - common
         log_K = log_K - common
     return Pigment(np.linalg.norm(log_K, axis=-1), np.linalg.norm(log_S, axis=-1))
-
-
-def _measured_lab(samples: PaintSamples, model: FitModel) -> Array:
-    rgb = samples.measured.values
-    if isinstance(samples.measured, MeasuredSpectra):
-        rgb = np.clip(model.sensor.rgb(rgb), 0, 1)
-    return np.asarray(_lab(rgb, model.sensor))
 
 
 def _lab(rgb: Any, sensor: Sensor) -> Any:

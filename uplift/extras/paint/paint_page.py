@@ -2,7 +2,6 @@
 opaque and as a film on white and black, under three lights, and recipes for a colour.
 """
 
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -10,7 +9,6 @@ import numpy as np
 from uplift.colorimetry import observer
 from uplift.colorimetry.sensor import Sensor
 from uplift.colorimetry.tables import bradford
-from uplift.common.files import write_text
 from uplift.extras.colour.light_sets import DESCRIPTIONS
 from uplift.extras.colour.srgb import hex_codes
 from uplift.extras.pages.html import render, resource
@@ -18,7 +16,6 @@ from uplift.extras.paint.paints import Paints
 
 LIGHTS = ("D65", "A", "FL11")
 WAVELENGTHS = (400.0, 700.0, 10.0)
-TINT_PARTS = 4
 SCRIPTS = (
     "extras/pages/draw.js",
     "extras/pages/lab.js",
@@ -27,11 +24,6 @@ SCRIPTS = (
     "extras/paint/paint_recipes.js",
     "extras/paint/paint_page.js",
 )
-
-
-def write_page(paints: Paints, path: Path, *, force: bool = False) -> None:
-    """Write the page of paints."""
-    write_text(page(paints), path, force=force)
 
 
 def page(paints: Paints) -> str:
@@ -49,21 +41,14 @@ def page(paints: Paints) -> str:
     """
     screen = observer.sensor(wavelengths=WAVELENGTHS)
     sampled = paints.at(screen.wavelengths)
-    own = sampled.reflectance(np.eye(len(paints)))
-    white = int(own.min(axis=1).argmax())
-    tint_parts = np.eye(len(paints)) + TINT_PARTS * np.eye(len(paints))[white]
-    masstones = hex_codes(screen.rgb(own))
-    tints = hex_codes(screen.rgb(sampled.reflectance(tint_parts)))
-    tubes = zip(paints.names, masstones, tints, strict=True)
+    masstones = hex_codes(screen.rgb(sampled.reflectance(np.eye(len(paints)))))
+    tints = hex_codes(screen.rgb(sampled.tints()))
     return render(
         "extras/paint/templates/paint_page.html.j2",
         title="Mix paints",
         lead="Squeeze paints from their tubes, or find the recipe of a colour.",
-        tubes=list(tubes),
-        lights=[
-            (name, DESCRIPTIONS.get(name, "daylight" if name == "D65" else ""))
-            for name in LIGHTS
-        ],
+        tubes=list(zip(paints.names, masstones, tints, strict=True)),
+        lights=[(name, DESCRIPTIONS[name]) for name in LIGHTS],
         numbers=page_numbers(paints),
         script=resource(*SCRIPTS),
     )

@@ -6,11 +6,11 @@ of the paints; the weights from reflectances to linear sRGB are fitted to mixtur
 judged by others.
 """
 
-import re
 from dataclasses import dataclass
 from importlib.resources import files
 from pathlib import Path
 from string import Template
+from typing import Self
 
 import numpy as np
 
@@ -19,7 +19,7 @@ from uplift.common.arrays import Array
 from uplift.common.errors import unknown_name
 from uplift.common.files import write_text
 from uplift.common.version import version
-from uplift.extras.export.source import comment, identifier, literal
+from uplift.extras.export.source import comment, identifier, literal, name_program
 from uplift.extras.paint.paints import Paints
 from uplift.extras.papers.wavelengths.choice import choose
 from uplift.extras.papers.wavelengths.sampling import make_setup
@@ -87,63 +87,45 @@ class FewSamples:
 
 def few_samples(paints: Paints, count: int = COUNT) -> FewSamples:
     """Choose wavelengths for mixtures of paints, and fit weights there."""
-    nm = paints.wavelengths
     sensor = paints.sensor
-    fitted, judged = _mixtures(paints, 0), _mixtures(paints, 1)
-    setup = make_setup(fitted.opaque, ["D65"], wavelengths=nm)
-    chosen = np.sort(choose(setup, count=count).sampling.wavelengths)
-    few = paints.at(chosen)
-    at_few = fitted.at(few)
-    spectra = np.concatenate([at_few.opaque, at_few.layers, np.ones((1, count))])
-    full = np.concatenate([fitted.opaque, fitted.layers, np.ones((1, len(nm)))])
-    rgb = sensor.rgb(full)
+    fitted, judged = _Mixtures.random(paints, 0), _Mixtures.random(paints, 1)
+    exact = fitted.spectra(paints)
+    setup = make_setup(exact[:MIXTURES], ["D65"], wavelengths=paints.wavelengths)
+    few = paints.at(np.sort(choose(setup, count=count).sampling.wavelengths))
+    # White is fitted as well.
+    spectra = np.concatenate([fitted.spectra(few), np.ones((1, count))])
+    rgb = sensor.rgb(np.concatenate([exact, np.ones_like(exact[:1])]))
     scale = 1 / (np.abs(rgb).mean(axis=1, keepdims=True) ** (2 / 3) + FLOOR)
     weights, *_ = np.linalg.lstsq(spectra * scale, rgb * scale, rcond=None)
-    test = judged.at(few)
-    errors = [
-        delta_e_rgb(sensor, np.clip(sensor.rgb(exact), 0, 1), np.clip(near, 0, 1))
-        for exact, near in (
-            (judged.opaque, test.opaque @ weights),
-            (judged.layers, test.layers @ weights),
-        )
-    ]
-    return FewSamples(few, weights.T, *errors)
+    true = np.clip(sensor.rgb(judged.spectra(paints)), 0, 1)
+    near = np.clip(judged.spectra(few) @ weights, 0, 1)
+    opaque_errors, layer_errors = np.split(delta_e_rgb(sensor, true, near), 2)
+    return FewSamples(few, weights.T, opaque_errors, layer_errors)
 
 
 @dataclass(frozen=True, eq=False)
 class _Mixtures:
-    """Reflectances of random mixtures: opaque, and in layers on grey grounds."""
+    """Random mixtures, opaque and in layers on grey grounds."""
 
     parts: Array
     thickness: Array
     grounds: Array
-    opaque: Array
-    layers: Array
 
-    def at(self, paints: Paints) -> "_Mixtures":
-        """Return the same mixtures of the paints at other wavelengths."""
-        return _spectra(paints, self.parts, self.thickness, self.grounds)
+    @classmethod
+    def random(cls, paints: Paints, seed: int) -> Self:
+        rng = np.random.default_rng(seed)
+        parts = rng.dirichlet(np.full(len(paints), CONCENTRATION), MIXTURES)
+        mixed = paints.pigments.mix(parts)
+        hiding = 1 / (mixed.absorption + mixed.scattering).mean(axis=1)
+        low, high = np.log(THICKNESSES).tolist()
+        thickness = hiding * np.exp(rng.uniform(low, high, MIXTURES))
+        return cls(parts, thickness, rng.random(MIXTURES))
 
-
-def _mixtures(paints: Paints, seed: int) -> _Mixtures:
-    rng = np.random.default_rng(seed)
-    parts = rng.dirichlet(np.full(len(paints), CONCENTRATION), MIXTURES)
-    mixed = paints.pigments.mix(parts)
-    hiding = 1 / (mixed.absorption + mixed.scattering).mean(axis=1)
-    low, high = np.log(THICKNESSES).tolist()
-    thickness = hiding * np.exp(rng.uniform(low, high, MIXTURES))
-    return _spectra(paints, parts, thickness, rng.random(MIXTURES))
-
-
-def _spectra(
-    paints: Paints, parts: Array, thickness: Array, grounds: Array
-) -> _Mixtures:
-    layers = [
-        paints.reflectance(row, x, ground)
-        for row, x, ground in zip(parts, thickness, grounds, strict=True)
-    ]
-    opaque = paints.reflectance(parts)
-    return _Mixtures(parts, thickness, grounds, opaque, np.array(layers))
+    def spectra(self, paints: Paints) -> Array:
+        """Return the reflectances (2 m, N) of the opaque mixtures, then of layers."""
+        films = zip(self.parts, self.thickness, self.grounds, strict=True)
+        layers = [paints.reflectance(*film) for film in films]
+        return np.concatenate([paints.reflectance(self.parts), layers])
 
 
 def write_program(
@@ -177,7 +159,7 @@ def write_program(
     if style not in LANGUAGES:
         raise unknown_name(style, LANGUAGES, "language")
     samples = few_samples(paints)
-    write_text(_text(samples, style, path.stem), path, force=force)
+    write_text(_text(samples, LANGUAGES[style], path.stem), path, force=force)
     return samples
 
 
@@ -191,18 +173,13 @@ def describe_errors(samples: FewSamples) -> str:
     )
 
 
-def _text(samples: FewSamples, style: str, stem: str) -> str:
-    language = LANGUAGES[style]
+def _text(samples: FewSamples, language: Language, stem: str) -> str:
     paints = samples.paints
-    name = identifier(stem)
-    values = {
-        "absorption": paints.pigments.absorption,
-        "scattering": paints.pigments.scattering,
-        "weights": samples.weights,
-    }
+    values = {**vars(paints.pigments), "weights": samples.weights}
+    tables = [_table(language, name, table) for name, table in values.items()]
     surface = paints.surface
     words = {
-        "title": f"{name}: mixtures of {len(paints)} paints, in the order",
+        "title": f"{identifier(stem)}: mixtures of {len(paints)} paints, in the order",
         "paints": ", ".join(map(comment, paints.names)),
         "version": version(),
         "wavelengths": ", ".join(f"{value:.0f}" for value in paints.wavelengths),
@@ -211,20 +188,18 @@ def _text(samples: FewSamples, style: str, stem: str) -> str:
         "closing": language.closing,
         "count": len(paints),
         "samples": len(paints.wavelengths),
-        "tables": "\n".join(
-            _table(language.table, key, table) for key, table in values.items()
-        ),
+        "tables": "\n".join(tables),
         "outside": literal(surface.outside),
         "inside": literal(surface.inside),
         "transmitted": literal((1 - surface.outside) * (1 - surface.inside)),
     }
     source = files("uplift.extras.paint") / "source" / "paints.txt"
     text = Template(source.read_text(encoding="ascii")).substitute(words)
-    text = re.sub(r"\bup_", f"{name}_", text)
-    return re.sub(r"\bUP_", f"{name.upper()}_", text).rstrip() + "\n"
+    return name_program(text, stem).rstrip() + "\n"
 
 
-def _table(template: str, name: str, values: Array) -> str:
+def _table(language: Language, name: str, values: Array) -> str:
     rows = [", ".join(map(literal, row)) for row in values.tolist()]
     numbers = ",\n".join(f"    {row}" for row in rows)
-    return Template(template).substitute(name=name, size=values.size, numbers=numbers)
+    template = Template(language.table)
+    return template.substitute(name=name, size=values.size, numbers=numbers)

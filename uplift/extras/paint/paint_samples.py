@@ -8,12 +8,14 @@ ground that others name.
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 
 from uplift.atlas.atlas import VISIBLE, Atlas
 from uplift.atlas.resampling import on_grid
 from uplift.atlas.sources import read_atlas
+from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Array, Mask, StrPath
 from uplift.common.errors import unknown_name
 from uplift.common.text import format_value
@@ -32,11 +34,29 @@ EVEN = 1e-6
 """Tolerance of even steps in nm."""
 
 
+@dataclass(frozen=True)
+class Noise:
+    """Standard deviation of measured values: of all, and relative to the value."""
+
+    absolute: float
+    relative: float
+
+    def spread(self, values: Array) -> Array:
+        """Return the standard deviation of values."""
+        return np.hypot(self.absolute, self.relative * values)
+
+
 @dataclass(frozen=True, eq=False)
 class MeasuredSpectra:
     """Reflectances (n, N) of samples."""
 
     values: Array
+    noise: ClassVar = Noise(0.002, 0.005)
+    """Smallest noise of reflectances."""
+
+    def rgb(self, sensor: Sensor) -> Array:
+        """Return linear sRGB (n, 3)."""
+        return np.clip(sensor.rgb(self.values), 0, 1)
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,6 +64,12 @@ class MeasuredColours:
     """Linear sRGB (n, 3) of samples whose reflectances are not known."""
 
     values: Array
+    noise: ClassVar = Noise(0.5, 0.0)
+    """Smallest noise of L*, a* and b*."""
+
+    def rgb(self, sensor: Sensor) -> Array:
+        """Return linear sRGB (n, 3)."""
+        return self.values
 
 
 Measured = MeasuredSpectra | MeasuredColours
@@ -89,6 +115,13 @@ class PaintSamples:
     def is_opaque(self) -> Mask:
         """Whether each sample (n,) hides its ground."""
         return np.isinf(self.thickness)
+
+    @property
+    def unmixed(self) -> list[str]:
+        """Paints that one opaque sample has, and none of their mixtures."""
+        alone = (self.shares > 0).sum(axis=0) == 1
+        pure = self.is_opaque[:, None] & (self.shares == 1)
+        return np.array(self.paints)[alone & pure.any(axis=0)].tolist()
 
 
 def read_paint_samples(path: StrPath, recipes: StrPath | None = None) -> PaintSamples:

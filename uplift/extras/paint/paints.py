@@ -13,9 +13,11 @@ from uplift.colorimetry.sensor import Light, Sensor
 from uplift.common.arrays import Array, as_array, as_nm
 from uplift.common.errors import OptionError, UpliftWarning, unknown_name, warn
 from uplift.common.text import listed
-from uplift.extras.paint.coats import Medium, coat_of_pigments
 from uplift.extras.paint.optics import NO_SURFACE, Surface
 from uplift.extras.paint.pigments import Pigment
+
+TINT_PARTS = 4
+"""Parts of white to one of paint in a tint."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -197,9 +199,22 @@ class Paints:
                 f"got shape {amounts.shape}",
                 hint="pass 0 for paints that are not in the mixture",
             )
-        medium = Medium(thickness, self.surface)
         backing = np.broadcast_to(ground, self.wavelengths.shape)
-        return coat_of_pigments(self.pigments, amounts, medium).over(backing)
+        return self.pigments.coat(amounts, thickness, self.surface).over(backing)
+
+    @cached_property
+    def lightest(self) -> int:
+        """Position of the paint that reflects most where it absorbs most, usually
+        white.
+        """
+        return int(self.reflectance(np.eye(len(self))).min(axis=1).argmax())
+
+    def tints(self) -> Array:
+        """Compute the reflectances (P, N) of `TINT_PARTS` parts of the lightest paint
+        to one of each.
+        """
+        alone = np.eye(len(self))
+        return self.reflectance(alone + TINT_PARTS * alone[self.lightest])
 
     def cost(self, parts: ArrayLike) -> Array:
         """Compute the price of one part of mixtures.

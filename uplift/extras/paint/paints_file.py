@@ -2,20 +2,28 @@
 checked.
 """
 
-from collections.abc import Iterator
+from itertools import chain
 from typing import Annotated, Literal, Self
 
 import numpy as np
 from pydantic import Field, model_validator
 
 from uplift.atlas.atlas import VISIBLE
-from uplift.common.arrays import StrPath
+from uplift.common.arrays import Array, StrPath
 from uplift.common.errors import PaintError
 from uplift.common.files import write_text
 from uplift.common.text import format_value
-from uplift.extras.files.spec import SpecModel, problem, read_toml
-from uplift.extras.files.toml import number_value, row_value, text_value
-from uplift.extras.paint.optics import Surface
+from uplift.extras.files.spec import (
+    NotNegative,
+    NotNegativeRow,
+    Row,
+    SpecModel,
+    check_shape,
+    problem,
+    read_spec,
+)
+from uplift.extras.files.toml import toml_text
+from uplift.extras.paint.optics import NO_SURFACE, Surface
 from uplift.extras.paint.paints import Paints
 from uplift.extras.paint.pigments import Pigment
 
@@ -23,13 +31,18 @@ FORMAT: Literal["uplift paints 1"] = "uplift paints 1"
 HINT = "fit the paints again"
 MAX_PAINTS = 1000
 MAX_SAMPLES = 1000
+LARGEST = 1e12
+"""Largest absorption and scattering, whose squares are finite."""
 LARGEST_STEP = 20.0
 """Largest step in nm."""
 EVEN = 1e-6
 """Tolerance of even steps in nm."""
+RANGE = (300.0, 900.0)
+"""Range of wavelengths in nm."""
 HEAD = """# Paints by uplift paints fit: absorption and scattering per unit thickness.
 # A price of a part may be added to each paint, such as: price = 0.35
 """
+ROWS = ("absorption", "scattering", "absorption_errors", "scattering_errors")
 
 
 def to_toml(paints: Paints) -> str:
@@ -45,28 +58,23 @@ def to_toml(paints: Paints) -> str:
     str
         The text; `read_paints` reads it.
     """
-    return HEAD + "\n".join(_lines(paints)) + "\n"
-
-
-def _lines(paints: Paints) -> Iterator[str]:
-    yield f"format = {text_value(FORMAT)}"
-    yield f"wavelengths = {row_value(paints.wavelengths)}"
-    yield f"to-scale = {str(paints.is_to_scale).lower()}"
-    yield ""
-    yield "[surface]"
-    yield f"outside = {number_value(paints.surface.outside)}"
-    yield f"inside = {number_value(paints.surface.inside)}"
+    columns = dict(vars(paints.pigments))
+    if paints.errors is not None:
+        errors = vars(paints.errors).items()
+        columns |= {f"{key}_errors": values for key, values in errors}
+    tables = []
     for row, name in enumerate(paints.names):
-        yield ""
-        yield "[[paints]]"
-        yield f"name = {text_value(name)}"
-        if paints.prices and np.isfinite(paints.prices[row]):
-            yield f"price = {number_value(paints.prices[row])}"
-        yield f"absorption = {row_value(paints.pigments.absorption[row])}"
-        yield f"scattering = {row_value(paints.pigments.scattering[row])}"
-        if paints.errors is not None:
-            yield f"absorption-errors = {row_value(paints.errors.absorption[row])}"
-            yield f"scattering-errors = {row_value(paints.errors.scattering[row])}"
+        price = paints.prices[row] if paints.prices else np.nan
+        table = {"name": name, "price": price if np.isfinite(price) else None}
+        tables.append(table | {key: values[row] for key, values in columns.items()})
+    values = {
+        "format": FORMAT,
+        "wavelengths": paints.wavelengths,
+        "to_scale": paints.is_to_scale,
+        "surface": vars(paints.surface),
+        "paints": tables,
+    }
+    return f"{HEAD}{toml_text(values)}\n"
 
 
 def write_paints(paints: Paints, path: StrPath, *, force: bool = False) -> None:
@@ -89,73 +97,66 @@ def write_paints(paints: Paints, path: StrPath, *, force: bool = False) -> None:
     write_text(to_toml(paints), path, force=force)
 
 
-_Positive = Annotated[float, Field(allow_inf_nan=False, ge=0, le=1e12)]
-_Wavelength = Annotated[float, Field(allow_inf_nan=False, ge=300, le=900)]
-_Fraction = Annotated[float, Field(ge=0, lt=1)]
-_Row = Annotated[list[_Positive], Field(min_length=2, max_length=MAX_SAMPLES)]
-_Wavelengths = Annotated[list[_Wavelength], Field(min_length=2, max_length=MAX_SAMPLES)]
-
-
-class _SurfaceTable(SpecModel):
-    outside: _Fraction = 0.0
-    inside: _Fraction = 0.0
-
-
-class _PaintTable(SpecModel):
+class _Paint(SpecModel):
     name: Annotated[str, Field(min_length=1, max_length=200)]
-    price: _Positive | None = None
-    absorption: _Row
-    scattering: _Row
-    absorption_errors: _Row | None = None
-    scattering_errors: _Row | None = None
+    price: NotNegative | None = None
+    absorption: NotNegativeRow
+    scattering: NotNegativeRow
+    absorption_errors: NotNegativeRow | None = None
+    scattering_errors: NotNegativeRow | None = None
 
 
-class _PaintsTable(SpecModel):
+class _PaintsFile(SpecModel):
     format: Literal["uplift paints 1"]
-    wavelengths: _Wavelengths
+    wavelengths: Row
     to_scale: bool = True
-    surface: _SurfaceTable = _SurfaceTable()
-    paints: Annotated[list[_PaintTable], Field(min_length=1, max_length=MAX_PAINTS)]
+    surface: Surface = NO_SURFACE
+    paints: Annotated[list[_Paint], Field(min_length=1, max_length=MAX_PAINTS)]
 
     @model_validator(mode="after")
-    def _sizes_agree(self) -> Self:
-        steps = np.diff(self.wavelengths)
-        if not (0 < steps[0] <= LARGEST_STEP and np.ptp(steps) < EVEN):
-            raise problem(
-                f"wavelengths must ascend in even steps of at most {LARGEST_STEP:g} nm"
+    def _fit_together(self) -> Self:
+        if not _are_even(self.wavelengths):
+            text = (
+                f"must be even steps of at most {LARGEST_STEP:g} nm from "
+                f"{VISIBLE[0]:g} to {VISIBLE[1]:g} nm, within {RANGE[0]:g}–{RANGE[1]:g}"
             )
-        first, last = self.wavelengths[0], self.wavelengths[-1]
-        if first > VISIBLE[0] or last < VISIBLE[1]:
-            raise problem(
-                f"wavelengths must cover {VISIBLE[0]:g} to {VISIBLE[1]:g} nm, got "
-                f"{first:g} to {last:g} nm"
-            )
+            raise problem(text, at=("wavelengths",))
         names = [paint.name for paint in self.paints]
-        for name in names:
-            if len(name.splitlines()) != 1 or "\0" in name:
-                raise problem(
-                    f"name must be one line of text, got {format_value(name)}"
-                )
-            if names.count(name) > 1:
-                raise problem(f"two paints have the name '{name}'", "rename one")
-        for paint in self.paints:
-            self._check_rows(paint)
+        for number, paint in enumerate(self.paints):
+            at = ("paints", number)
+            if len(paint.name.splitlines()) != 1 or "\0" in paint.name:
+                text = f"must be one line of text, got {format_value(paint.name)}"
+                raise problem(text, at=(*at, "name"))
+            if names.count(paint.name) > 1:
+                raise problem(f"two paints have the name '{paint.name}'", at=at)
+            for key in ROWS:
+                values = getattr(paint, key)
+                if values is not None:
+                    check_shape(values, self.wavelengths.shape, *at, key)
+                    if values.max() > LARGEST:
+                        raise problem(f"must be at most {LARGEST:g}", at=(*at, key))
+            if not (paint.absorption + paint.scattering).all():
+                text = f"'{paint.name}' neither absorbs nor scatters at some wavelength"
+                raise problem(text, at=at)
         return self
 
-    def _check_rows(self, paint: _PaintTable) -> None:
-        rows = [paint.absorption, paint.scattering]
-        errors = [paint.absorption_errors, paint.scattering_errors]
-        rows += [row for row in errors if row is not None]
-        for row in rows:
-            if len(row) != len(self.wavelengths):
-                raise problem(
-                    f"paint '{paint.name}' must have {len(self.wavelengths)} values a "
-                    f"row, one per wavelength, got {len(row)}"
-                )
-        if not np.add(paint.absorption, paint.scattering).all():
-            raise problem(
-                f"paint '{paint.name}' neither absorbs nor scatters at some wavelength"
-            )
+    def pigment(self, absorption: str, scattering: str) -> Pigment | None:
+        """Return the rows (P, N) of two keys; None if a paint lacks one."""
+        keys = (absorption, scattering)
+        rows = [[getattr(paint, key) for paint in self.paints] for key in keys]
+        if any(values is None for values in chain(*rows)):
+            return None
+        return Pigment(*map(np.array, rows))
+
+
+def _are_even(nm: Array) -> bool:
+    """Whether wavelengths are in even steps, and cover the visible range."""
+    if not 1 < len(nm) <= MAX_SAMPLES:
+        return False
+    steps = np.diff(nm)
+    is_even = 0 < steps[0] <= LARGEST_STEP and np.ptp(steps) < EVEN
+    starts = RANGE[0] <= nm[0] <= VISIBLE[0]
+    return bool(is_even and starts and VISIBLE[1] <= nm[-1] <= RANGE[1])
 
 
 def read_paints(path: StrPath) -> Paints:
@@ -175,25 +176,16 @@ def read_paints(path: StrPath) -> Paints:
     PaintError
         The file cannot be read or a value does not fit; the error names the key.
     """
-    table = read_toml(path, PaintError).validate(_PaintsTable, hint=HINT)
-    tables = table.paints
-    pigments = Pigment(
-        np.array([paint.absorption for paint in tables]),
-        np.array([paint.scattering for paint in tables]),
-    )
-    errors = None
-    if all(paint.absorption_errors and paint.scattering_errors for paint in tables):
-        errors = Pigment(
-            np.array([paint.absorption_errors for paint in tables]),
-            np.array([paint.scattering_errors for paint in tables]),
-        )
-    prices = [np.nan if paint.price is None else paint.price for paint in tables]
+    file = read_spec(path, _PaintsFile, PaintError, hint=HINT)
+    pigments = file.pigment("absorption", "scattering")
+    assert pigments is not None
+    prices = np.array([paint.price for paint in file.paints], dtype=float)
     return Paints(
-        tuple(paint.name for paint in tables),
-        np.array(table.wavelengths),
+        tuple(paint.name for paint in file.paints),
+        file.wavelengths,
         pigments,
-        Surface(table.surface.outside, table.surface.inside),
-        errors,
-        tuple(prices) if np.isfinite(prices).any() else (),
-        table.to_scale,
+        file.surface,
+        file.pigment("absorption_errors", "scattering_errors"),
+        tuple(prices.tolist()) if np.isfinite(prices).any() else (),
+        file.to_scale,
     )

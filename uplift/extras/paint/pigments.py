@@ -29,7 +29,16 @@ from numpy.typing import ArrayLike
 from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Array
 from uplift.common.errors import ColourError
-from uplift.extras.paint.optics import TINY, Layer, as_shares, weighted_sum
+from uplift.extras.paint.optics import (
+    NO_SURFACE,
+    TINY,
+    Coat,
+    Layer,
+    Surface,
+    as_shares,
+    check_thickness,
+    weighted_sum,
+)
 
 DARKEST = 1e-4  # smallest reflectance that K and S are derived from; K diverges at 0
 # contradiction between measurements on two grounds that is accepted as rounding
@@ -44,19 +53,8 @@ DARKEST_DISPERSED = 0.01
 # 1.
 Scattering = Callable[[Array], Array]
 
-
-@dataclass(frozen=True)
-class PowerOfReflectance:
-    """S = R^p."""
-
-    exponent: float
-
-    def __call__(self, reflectance: Array) -> Array:
-        return reflectance**self.exponent
-
-
-SQUARE_ROOT = PowerOfReflectance(0.5)
-CONSTANT = PowerOfReflectance(0.0)
+SQUARE_ROOT: Scattering = np.sqrt
+CONSTANT: Scattering = np.ones_like
 
 
 @dataclass(frozen=True, eq=False)
@@ -161,6 +159,40 @@ class Pigment:
         cosh = (1 + xp.exp(-path)) / 2
         delta = (self.absorption + self.scattering) * sinh + cosh
         return Layer(self.scattering * sinh / delta, xp.exp(-path / 2) / delta)
+
+    def coat(
+        self,
+        parts: ArrayLike,
+        thickness: float | None = None,
+        surface: Surface = NO_SURFACE,
+    ) -> Coat:
+        """Make a coat of the pigments (n, N), mixed by parts (..., n).
+
+        Parameters
+        ----------
+        parts : array_like of shape (..., n)
+            Amounts of the pigments.
+        thickness : float, optional
+            Thickness in units of 1/K and 1/S, by default opaque.
+        surface : Surface
+            Surface of the vehicle.
+
+        Returns
+        -------
+        Coat
+            The coat; ``coat.over(ground)`` is its reflectance on a ground.
+
+        Raises
+        ------
+        OptionError
+            Parts or thickness are invalid.
+        """
+        check_thickness(thickness)
+        mixture = self.mix(parts)
+        if thickness is not None:
+            return Coat(mixture.layer(thickness), surface)
+        reflectance = mixture.opaque_reflectance()
+        return Coat(Layer(reflectance, np.zeros_like(reflectance)), surface)
 
     def amy_opaque_reflectance(self) -> Array:
         """Return the reflectance (..., N) of opaque paint in Amy's approximation for

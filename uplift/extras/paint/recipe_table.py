@@ -3,7 +3,7 @@ ground.
 """
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,14 +11,10 @@ import numpy as np
 from uplift.atlas.document import SourceLocation, read_document, truncate
 from uplift.common.arrays import StrPath
 from uplift.common.text import format_value
-from uplift.extras.files.csv import (
-    find_delimiter,
-    is_decimal,
-    parse_decimal,
-    split_line,
-)
-from uplift.extras.formats.tables.cells import parse_cell, parse_label
-from uplift.extras.paint.coats import MAX_THICKNESS
+from uplift.extras.files.csv import is_decimal, parse_decimal
+from uplift.extras.formats.delimited import split_rows
+from uplift.extras.formats.tables.cells import parse_cell, parse_label, texts_of
+from uplift.extras.paint.optics import MAX_THICKNESS
 from uplift.extras.paint.paint_columns import (
     LENGTH,
     MICROMETRES,
@@ -64,99 +60,84 @@ class RecipeTable:
 def read_recipes(path: StrPath) -> RecipeTable:
     """Read a table of recipes: a header row, and a row per sample."""
     document = read_document(path)
-    lines = document.text.splitlines()
-    content = [
-        (number, line)
-        for number, line in enumerate(lines, start=1)
-        if line.strip() and not line.lstrip().startswith("#")
-    ]
-    delimiter = find_delimiter(line for _, line in content)
-    rows = [(number, split_line(line, delimiter)) for number, line in content]
     location = document.location
-    start, head = next(
-        ((at, row) for at, (_, row) in enumerate(rows) if len(row) > 1), (0, [])
-    )
-    width = max((len(row) for _, row in rows), default=1)
-    head = [*head, *[""] * (width - len(head))]
-    padded = [
-        (number, [*row, *[""] * (width - len(row))])
-        for number, row in rows[start + 1 :]
-        if any(row)
-    ]
-    columns = find_columns(head, [row for _, row in padded], location)
+    delimiter, rows = split_rows(document)
+    start = next((at for at, row in enumerate(rows) if len(row) > 1), len(rows))
+    # An empty column at the end stands for those that the table has not.
+    width = max(map(len, rows), default=0) + 1
+    texts = [[*texts_of(row), *[""] * (width - len(row))] for row in rows[start:]]
+    head, *body = texts or [[""]]
+    columns = find_columns(head, body, location)
     if not columns.paints:
         raise location.error(
             "no column has the parts of a paint",
             "name columns after the paints, and write their parts in each row",
             code="no-paints",
         )
-    films = [_cell(cells, columns.thickness) for _, cells in padded]
-    label = _cell(head, columns.thickness)
-    unit = next(filter(None, map(_unit, (label, *films))), "")
-    recipes = tuple(_recipes(padded, columns, unit, delimiter, location))
-    has_spectra = any(parse_label(text) is not None for text in head)
+    films = [head[columns.thickness], *(cells[columns.thickness] for cells in body)]
+    unit = next(filter(None, map(_unit, films)), "")
+    recipes = dict[str, Recipe]()
+    for row, cells in zip(rows[start + 1 :], body, strict=True):
+        here = location.at(row[0].line, cells[columns.name])
+        recipe = _recipe(cells, columns, unit, delimiter, here)
+        if recipe.name in recipes:
+            raise here.error(
+                f"two samples have the name {format_value(recipe.name)}",
+                "name each measurement, such as 'a 1' and 'a 2'",
+            )
+        recipes[recipe.name] = recipe
     notes = list[str]()
     if columns.unused:
         labels = [truncate(label) or "(no label)" for label in columns.unused]
         notes.append(f"not used: {', '.join(labels)}")
     if unit:
         notes.append(f"thickness in {unit}")
-    if columns.thickness is None and any(
-        np.isfinite(recipe.thickness) for recipe in recipes
+    if columns.thickness < 0 and any(
+        recipe.thickness == 1 for recipe in recipes.values()
     ):
         notes.append("no thickness is stated: that of all films is 1")
+    has_spectra = any(parse_label(text) is not None for text in head)
     return RecipeTable(
-        tuple(columns.paints), recipes, location, has_spectra, tuple(notes)
+        tuple(columns.paints),
+        tuple(recipes.values()),
+        location,
+        has_spectra,
+        tuple(notes),
     )
 
 
-def _recipes(
-    rows: Sequence[tuple[int, Sequence[str]]],
+def _recipe(
+    cells: Sequence[str],
     columns: Columns,
     unit: str,
     delimiter: str,
     location: SourceLocation,
-) -> Iterator[Recipe]:
-    """Yield the recipes of rows, with thicknesses in a unit."""
-    names = set[str]()
-    for line, cells in rows:
-        name = cells[columns.name]
-        here = location.at(line, name)
-        if name in names:
-            raise here.error(
-                f"two samples have the name {format_value(name)}",
-                "name each measurement, such as 'a 1' and 'a 2'",
-            )
-        names.add(name)
-        parts = tuple(
-            _parts(paint, cells[column], delimiter, here)
-            for paint, column in columns.paints.items()
+) -> Recipe:
+    """Return the recipe of a row, with a thickness in a unit."""
+    parts = tuple(
+        _parts(paint, cells[column], delimiter, location)
+        for paint, column in columns.paints.items()
+    )
+    ground = cells[columns.ground]
+    text = cells[columns.thickness]
+    if columns.thickness >= 0 and any(parts) and bool(text) != bool(ground):
+        raise location.error(
+            "a film must have a thickness and a ground, got "
+            f"{format_value(text)} and {format_value(ground)}",
+            "name its ground (white, black, or a sample without paint); leave both "
+            "empty for opaque samples",
         )
-        ground = _cell(cells, columns.ground)
-        text = _cell(cells, columns.thickness)
-        is_stated = columns.thickness is not None and any(parts)
-        if is_stated and bool(text) != bool(ground):
-            raise here.error(
-                "a film must have a thickness and a ground, got "
-                f"{format_value(text)} and {format_value(ground)}",
-                "name its ground (white, black, or a sample without paint); leave both "
-                "empty for opaque samples",
-            )
-        thickness = 1.0 if ground else np.inf
-        if text:
-            thickness = _thickness(text, unit, here)
-        yield Recipe(
-            name,
-            parts,
-            thickness,
-            ground or "white",
-            _cell(cells, columns.colour),
-            line,
-        )
-
-
-def _cell(cells: Sequence[str], column: int | None) -> str:
-    return "" if column is None else cells[column]
+    thickness = 1.0 if ground else np.inf
+    if text:
+        thickness = _thickness(text, unit, location)
+    return Recipe(
+        cells[columns.name],
+        parts,
+        thickness,
+        ground or "white",
+        cells[columns.colour],
+        location.line or 0,
+    )
 
 
 def _parts(paint: str, text: str, delimiter: str, location: SourceLocation) -> float:
@@ -176,7 +157,7 @@ def _parts(paint: str, text: str, delimiter: str, location: SourceLocation) -> f
 def _unit(text: str) -> str:
     """Return the unit of length in a text, empty without one."""
     match = UNIT.search(text)
-    return match[0].casefold() if match else ""
+    return match[0].casefold().removesuffix("s") if match else ""
 
 
 def _thickness(text: str, unit: str, location: SourceLocation) -> float:
@@ -184,14 +165,10 @@ def _thickness(text: str, unit: str, location: SourceLocation) -> float:
     number = UNIT.sub("", text).strip()
     thickness = parse_decimal(number) if is_decimal(number) else np.nan
     if stated := _unit(text):
-        thickness *= _micrometres(stated) / _micrometres(unit)
+        thickness *= MICROMETRES[stated] / MICROMETRES[unit]
     if not 0 < thickness <= MAX_THICKNESS:
         raise location.error(
             f"thickness must be in (0, {MAX_THICKNESS:g}], got {format_value(text)}",
             "leave it empty for opaque samples",
         )
     return thickness
-
-
-def _micrometres(unit: str) -> float:
-    return MICROMETRES[unit.removesuffix("s")]

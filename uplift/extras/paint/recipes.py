@@ -8,18 +8,26 @@ parts are tried as well. Of up to two paints the grid is dense enough that no be
 shares exist; of more, the best of several starts is not proven to be the best.
 """
 
-from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import combinations, product
+from math import comb
 
 import numpy as np
 
-from uplift.colorimetry.delta_e import delta_e_2000, delta_e_2000_terms, lab
+from uplift.colorimetry.delta_e import (
+    delta_e_2000,
+    delta_e_2000_terms,
+    delta_e_spectra,
+    lab,
+)
 from uplift.colorimetry.sensor import Light
 from uplift.common.arrays import Array, Indices, blocks
 from uplift.common.errors import OptionError
+from uplift.extras.colour.light_sets import RELIGHT_LIGHTS
 from uplift.extras.paint.optics import TINY
 from uplift.extras.paint.paints import Paints, check_unit
+from uplift.models.least_squares import least_squares
 
 MAX_COUNT = 5
 """Largest number of paints of a recipe."""
@@ -36,23 +44,16 @@ STARTS = 3
 STEPS = 12
 LARGEST = 9.0
 """Largest logarithm of a ratio."""
-LONGEST = 2.0
-"""Largest change of a logarithm in a step."""
-DAMPING = (1e-9, 1e3)
-"""Limits of the damping, relative to the trace of the normal equations."""
 DIFFERENCE = 1e-5
 """Change of a logarithm by which derivatives are computed."""
-FIRST_DAMPING = 1e-3
-"""Relative to the trace of the normal equations."""
+PRECISION = 1e-6
+"""Relative change at which a descent ends."""
 BLOCK = 1 << 16
 """Mixtures that are computed at a time."""
 KEPT = 200
 """Sets whose shares are rounded to parts."""
 NEARLY = 0.1
 """ΔE00 by which a recipe of fewer parts may be worse."""
-
-
-Residuals = Callable[[Array], Array]
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,6 +76,11 @@ class PaintTarget:
     lights: tuple[Light, ...]
     thickness: float | None = None
     ground: Array | float = 1.0
+
+    def colours(self, reflectance: Array) -> Array:
+        """Compute CIE L*a*b* (…, L, 3) of reflectances (…, N) under each light."""
+        colours = [lab(reflectance @ light.xyz.T, light.white) for light in self.lights]
+        return np.stack(colours, axis=-2)
 
 
 @dataclass(frozen=True, eq=False)
@@ -100,6 +106,10 @@ class PaintRecipe:
     reflectance: Array
     delta_e: tuple[float, ...]
     cost: float
+
+    def __str__(self) -> str:
+        pairs = zip(self.parts, self.paints, strict=True)
+        return " + ".join(f"{parts} {name}" for parts, name in pairs)
 
     @property
     def error(self) -> float:
@@ -148,23 +158,19 @@ def match(
     """
     _check(paints, count, steps, alternatives)
     check_unit(paints, target.thickness)
-    problem = _Problem.of(target, paints)
-    solved = list[tuple[float, Indices, Array]]()
+    problem = _Problem(target, paints)
+    solved = []
     for size in range(1, min(count, len(paints)) + 1):
         sets = np.array(list(combinations(range(len(paints)), size)))
-        shares, squares = _solve(problem, sets)
-        solved += zip(squares.tolist(), sets, shares, strict=True)
-    solved.sort(key=lambda entry: entry[0])
-    recipes = [
-        _round(problem, members, shares, steps) for _, members, shares in solved[:KEPT]
-    ]
+        solved.append(_solve(problem, sets))
+    parts, squares = (np.concatenate(arrays) for arrays in zip(*solved, strict=True))
+    nearest = np.argsort(squares, kind="stable")[:KEPT]
+    recipes = [_round(problem, row, steps) for row in parts[nearest]]
     recipes.sort(key=lambda recipe: recipe.error)
-    distinct = list[PaintRecipe]()
+    distinct = dict[frozenset[str], PaintRecipe]()
     for recipe in recipes:
-        used = set(recipe.paints)
-        if all(used != set(other.paints) for other in distinct):
-            distinct.append(recipe)
-    return tuple(distinct[:alternatives])
+        distinct.setdefault(frozenset(recipe.paints), recipe)
+    return tuple(distinct.values())[:alternatives]
 
 
 def _check(paints: Paints, count: int, steps: int, alternatives: int) -> None:
@@ -177,13 +183,10 @@ def _check(paints: Paints, count: int, steps: int, alternatives: int) -> None:
             raise OptionError(
                 f"{name} must be in [1, {most}], got {value}", hint="choose another"
             )
-    sets = 1.0
-    for taken in range(min(count, len(paints))):
-        sets *= (len(paints) - taken) / (taken + 1)
+    sets = comb(len(paints), min(count, len(paints)))
     if sets > MAX_SETS:
         raise OptionError(
-            f"{len(paints)} paints have {sets:.0f} sets of {count}, more than "
-            f"{MAX_SETS}",
+            f"{len(paints)} paints have {sets} sets of {count}, more than {MAX_SETS}",
             code="too-many-recipes",
             hint="allow fewer paints in a mixture, or choose from fewer",
         )
@@ -191,134 +194,123 @@ def _check(paints: Paints, count: int, steps: int, alternatives: int) -> None:
 
 @dataclass(frozen=True, eq=False)
 class _Problem:
-    """Mixtures (m, P) as colours (m, L, 3) under the lights of a target."""
+    """Mixtures by parts (m, P) of all paints, near the target."""
 
     target: PaintTarget
     paints: Paints
-    goals: Array  # (L, 3)
 
-    @classmethod
-    def of(cls, target: PaintTarget, paints: Paints) -> "_Problem":
-        goals = _colours(target.reflectance, target.lights)
-        return cls(target, paints, goals)
+    @cached_property
+    def goals(self) -> Array:
+        """Colours (L, 3) of the target."""
+        return self.target.colours(self.target.reflectance)
 
     def reflectance(self, parts: Array) -> Array:
-        """Return the reflectances (m, N) of mixtures by parts (m, P)."""
-        target = self.target
-        return self.paints.reflectance(parts, target.thickness, target.ground)
+        """Return the reflectances (m, N) of mixtures."""
+        return self.paints.reflectance(parts, self.target.thickness, self.target.ground)
 
     def residuals(self, parts: Array) -> Array:
         """Return the differences (m, 3 L) of mixtures to the target: terms of ΔE00."""
         pieces = []
         for rows in blocks(len(parts), BLOCK):
-            colours = _colours(self.reflectance(parts[rows]), self.target.lights)
+            colours = self.target.colours(self.reflectance(parts[rows]))
             differences = delta_e_2000_terms(colours, self.goals)
             pieces.append(differences.reshape(len(colours), -1))
         return np.concatenate(pieces)
 
-    def errors(self, parts: Array) -> Array:
-        """Return ΔE00 (m, L) between mixtures and the target."""
-        colours = _colours(self.reflectance(parts), self.target.lights)
-        return delta_e_2000(colours, self.goals)
-
-    def spread(self, sets: Indices, shares: Array) -> Array:
-        """Return shares (m, k) of sets of paints (m, k) as parts of all, (m, P)."""
+    def parts(self, sets: Indices, ratios: Array) -> Array:
+        """Return the parts (m, P) of sets of paints (m, k) by the logarithms (m, k − 1)
+        of the ratios of their shares to the first.
+        """
+        logarithms = np.concatenate([np.zeros((len(sets), 1)), ratios], axis=1)
+        weights = np.exp(logarithms - logarithms.max(axis=1, keepdims=True))
         parts = np.zeros((len(sets), len(self.paints)))
+        shares = weights / weights.sum(axis=1, keepdims=True)
         np.put_along_axis(parts, sets, shares, axis=1)
         return parts
 
+    def descend(self, sets: Indices, start: Array) -> Array:
+        """Return the ratios (m, k − 1) that come nearest, from those of a start."""
+        steps = DIFFERENCE * np.eye(start.shape[1])
 
-def _colours(reflectance: Array, lights: Sequence[Light]) -> Array:
-    """Return CIE L*a*b* (…, L, 3) of reflectances (…, N) under each light."""
-    colours = [lab(reflectance @ light.xyz.T, light.white) for light in lights]
-    return np.stack(colours, axis=-2)
+        def residuals(ratios: Array, rows: Indices) -> Array:
+            return self.residuals(self.parts(sets[rows], ratios))
+
+        def normal_equations(
+            ratios: Array, values: Array, rows: Indices
+        ) -> tuple[Array, Array]:
+            moved = [residuals(ratios + step, rows) for step in steps]
+            jacobian = (np.stack(moved, axis=2) - values[..., None]) / DIFFERENCE
+            slope = (jacobian.mT @ values[..., None])[..., 0]
+            # Of a layer without thickness nothing changes the colour.
+            gram = jacobian.mT @ jacobian + TINY * np.eye(len(steps))
+            return gram, slope
+
+        return least_squares(
+            residuals,
+            normal_equations,
+            start,
+            max_steps=STEPS,
+            precision=PRECISION,
+            limit=LARGEST,
+        )
 
 
 def _solve(problem: _Problem, sets: Indices) -> tuple[Array, Array]:
-    """Return the best shares (m, k) of sets of paints (m, k), and their errors (m,)."""
+    """Return the best parts (m, P) of sets of paints (m, k), and their errors (m,)."""
     size = sets.shape[1]
-    levels = FINE if size == 2 else LEVELS if size == 3 else COARSE
+    levels = {2: FINE, 3: LEVELS}.get(size, COARSE)
     grid = np.array(list(product(levels, repeat=size - 1)), dtype=float)
     repeated = np.repeat(sets, len(grid), axis=0)
-    starts = np.tile(grid, (len(sets), 1))
-    tried = problem.residuals(problem.spread(repeated, shares_of(starts)))
-    sums = (tried**2).sum(axis=1).reshape(len(sets), len(grid))
-    best = np.argsort(sums, axis=1)[:, :STARTS]
+    tried = problem.parts(repeated, np.tile(grid, (len(sets), 1)))
+    squares = (problem.residuals(tried) ** 2).sum(axis=1).reshape(len(sets), -1)
+    best = np.argsort(squares, axis=1)[:, :STARTS]
     followed = np.repeat(sets, best.shape[1], axis=0)
-
-    def residuals(ratios: Array) -> Array:
-        return problem.residuals(problem.spread(followed, shares_of(ratios)))
-
-    ratios, squares = descend(residuals, grid[best.ravel()])
-    squares = squares.reshape(best.shape)
+    ratios = grid[best.ravel()]
+    if size > 1:
+        ratios = problem.descend(followed, ratios)
+    parts = problem.parts(followed, ratios)
+    squares = (problem.residuals(parts) ** 2).sum(axis=1).reshape(best.shape)
+    rows = np.arange(len(sets))
     chosen = squares.argmin(axis=1)
-    ratios = ratios.reshape(*best.shape, size - 1)[np.arange(len(sets)), chosen]
-    return shares_of(ratios), squares.min(axis=1)
+    return parts.reshape(*best.shape, -1)[rows, chosen], squares[rows, chosen]
 
 
-def descend(residuals: Residuals, ratios: Array) -> tuple[Array, Array]:
-    """Follow Levenberg–Marquardt steps from logarithms of ratios (m, k − 1) to those
-    of a smaller sum of squares, and return both.
-
-    ``residuals`` maps them to residuals (m, r), each row independently.
-    """
-    values = residuals(ratios)
-    squares = (values**2).sum(axis=1)
-    damping = np.full(len(ratios), FIRST_DAMPING)
-    count = ratios.shape[1]
-    for _ in range(STEPS if count else 0):
-        columns = []
-        for column in range(count):
-            moved = ratios + DIFFERENCE * np.eye(count)[column]
-            columns.append((residuals(moved) - values) / DIFFERENCE)
-        jacobian = np.stack(columns, axis=2)
-        normal = jacobian.mT @ jacobian
-        scale = np.trace(normal, axis1=1, axis2=2) + TINY
-        damped = normal + (damping * scale)[:, None, None] * np.eye(count)
-        slope = (jacobian.mT @ values[..., None])[..., 0]
-        step = np.linalg.solve(damped, -slope[..., None])[..., 0]
-        limited = np.clip(step, -LONGEST, LONGEST)
-        trial = np.clip(ratios + limited, -LARGEST, LARGEST)
-        changed = residuals(trial)
-        trial_squares = (changed**2).sum(axis=1)
-        is_better = trial_squares < squares
-        ratios = np.where(is_better[:, None], trial, ratios)
-        values = np.where(is_better[:, None], changed, values)
-        squares = np.where(is_better, trial_squares, squares)
-        damping = np.clip(damping * np.where(is_better, 0.2, 8), *DAMPING)
-    return ratios, squares
-
-
-def shares_of(ratios: Array) -> Array:
-    """Return shares (m, k) of logarithms (m, k − 1) of their ratios to the first."""
-    logarithms = np.concatenate([np.zeros((len(ratios), 1)), ratios], axis=1)
-    weights = np.exp(logarithms - logarithms.max(axis=1, keepdims=True))
-    return np.asarray(weights / weights.sum(axis=1, keepdims=True))
-
-
-def _round(
-    problem: _Problem, members: Indices, shares: Array, steps: int
-) -> PaintRecipe:
+def _round(problem: _Problem, shares: Array, steps: int) -> PaintRecipe:
     """Return the recipe of the fewest parts that is nearly as good as any of up to
     ``steps`` parts.
     """
     totals = np.arange(1, steps + 1)[:, None]
-    counts = np.unique(np.rint(totals * shares), axis=0)
+    counts = np.unique(np.rint(totals * shares).astype(int), axis=0)
     counts = counts[(counts.sum(axis=1) <= steps) & counts.any(axis=1)]
-    divisors = np.gcd.reduce(counts.astype(int), axis=1)
-    counts = np.unique(counts / divisors[:, None], axis=0)
-    sets = np.broadcast_to(members, counts.shape)
-    parts = problem.spread(sets, counts)
-    errors = problem.errors(parts)
+    counts = np.unique(counts // np.gcd.reduce(counts, axis=1)[:, None], axis=0)
+    colours = problem.target.colours(problem.reflectance(counts))
+    errors = delta_e_2000(colours, problem.goals)
     mean = errors.mean(axis=1)
     is_good = mean <= mean.min() + NEARLY
-    fewest = np.where(is_good, counts.sum(axis=1), np.inf)
-    row = int(fewest.argmin())
-    order = [at for at in np.argsort(-counts[row], kind="stable") if counts[row, at]]
+    row = int(np.where(is_good, counts.sum(axis=1), np.inf).argmin())
+    parts = counts[row]
+    order = [at for at in np.argsort(-parts, kind="stable") if parts[at]]
     return PaintRecipe(
-        tuple(problem.paints.names[members[at]] for at in order),
-        tuple(int(counts[row, at]) for at in order),
-        problem.reflectance(parts[row]),
+        tuple(problem.paints.names[at] for at in order),
+        tuple(parts[order].tolist()),
+        problem.reflectance(parts),
         tuple(errors[row].tolist()),
-        float(problem.paints.cost(parts[row])),
+        float(problem.paints.cost(parts)),
     )
+
+
+def elsewhere(
+    target: PaintTarget, paints: Paints, recipe: PaintRecipe
+) -> dict[str, float]:
+    """Return ΔE00 between a recipe and its target under further lights, by name: the
+    index of metamerism.
+    """
+    known = {light.name for light in target.lights}
+    lights = [paints.light(name) for name in RELIGHT_LIGHTS]
+    return {
+        light.name: float(
+            delta_e_spectra(light, recipe.reflectance, target.reflectance)
+        )
+        for light in lights
+        if light.name not in known
+    }

@@ -17,7 +17,6 @@ matches the product.
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from functools import cache
 
 import numpy as np
@@ -25,11 +24,9 @@ from numpy.typing import ArrayLike
 
 from uplift.colorimetry import observer
 from uplift.colorimetry.illuminants import DEFAULT_ILLUMINANT
-from uplift.colorimetry.sensor import Sensor
 from uplift.colorimetry.tables import samples
 from uplift.common.arrays import Array
-from uplift.extras.paint import pigments
-from uplift.extras.paint.coats import dye_absorption, dye_transmittance
+from uplift.extras.paint.coats import Dyes
 from uplift.extras.paint.duntley import beam_to_diffuse, diffuse_to_beam
 from uplift.extras.paint.optics import (
     Surface,
@@ -38,7 +35,14 @@ from uplift.extras.paint.optics import (
     stack_filters,
     weighted_sum,
 )
-from uplift.extras.paint.pigments import Pigment, Scattering
+from uplift.extras.paint.pigments import (
+    CONSTANT,
+    SQUARE_ROOT,
+    Pigment,
+    Scattering,
+    dispersive,
+    from_opaque,
+)
 from uplift.lookup.cube import Cube
 
 # from components (..., n, K) and parts (..., n) to the mixture (..., K)
@@ -53,76 +57,40 @@ RGB_WHEEL = (0.0, 1 / 6, 2 / 3, 1.0)
 RYB_WHEEL = (0.0, 1 / 3, 2 / 3, 1.0)  # hues of red, yellow, blue and red again
 
 
-@dataclass(frozen=True, eq=False)
-class Mixer:
-    """A mixing model."""
-
-    name: str  # for programs
-    title: str  # for readers
-    # from linear RGB (n, 3) and parts (..., n) to linear RGB (..., 3), which may leave
-    # the gamut
-    mix: Mix
-
-
-def mixers(cube: Cube) -> tuple[Mixer, ...]:
-    """Return the spectral models, for colours uplifted by a cube, and the RGB
-    heuristics.
+def mixers(cube: Cube) -> dict[str, Mix]:
+    """Return the models by title, from linear RGB (n, 3) and parts (..., n) to linear
+    RGB (..., 3), which may leave the gamut: spectral ones, for colours uplifted by a
+    cube, and heuristics of RGB.
     """
     sensor = cube.data.sensor
+    law = dispersive(sensor)
+    paints = _paints(law)
+
+    def in_oil(spectra: Array, parts: Array) -> Array:
+        return OIL.apply(paints(OIL.beneath(spectra), parts))
+
+    def in_beam(spectra: Array, parts: Array) -> Array:
+        return diffuse_to_beam(paints(beam_to_diffuse(spectra), parts))
+
+    def dyes(spectra: Array, parts: Array) -> Array:
+        return Dyes(spectra).coat(parts).over(1.0)
 
     def uplifted(mix: Mix) -> Mix:
         return lambda rgb, parts: sensor.rgb(mix(cube.reflectance(rgb), parts))
 
-    spectral = (
-        Mixer(name, title, uplifted(mix))
-        for name, (title, mix) in spectral_models(sensor).items()
-    )
-    return (
-        *spectral,
-        Mixer("average", "average of RGB", average_areas),  # Fishkin 1983, eq. 8.3
-        Mixer("product", "product of RGB", stack_filters),  # eq. 9.2
-        Mixer(
-            "ryb", "RYB-HSL", lambda rgb, parts: mix_ryb(np.clip(rgb, 0, 1), parts)
-        ),  # section 10.4
-        Mixer("phosphors", "phosphor curves", mix_phosphors),  # chapter 7
-    )
-
-
-def spectral_models(sensor: Sensor) -> dict[str, tuple[str, Mix]]:
-    """Return the models of spectra (title, function) at the wavelengths of a sensor, by
-    name.
-    """
-    paints = _paints(pigments.dispersive(sensor))
     return {
-        "pigments": ("Kubelka–Munk", paints),
-        "pigments in oil": (
-            "Kubelka–Munk, in oil (index 1.5)",
-            lambda spectra, parts: OIL.apply(
-                paints(np.clip(OIL.remove(spectra), 0, 1), parts)
-            ),
-        ),
-        "pigments, S = √R": ("Kubelka–Munk, S = √R", _paints(pigments.SQUARE_ROOT)),
-        "pigments, S = 1": ("Kubelka–Munk, S = 1", _paints(pigments.CONSTANT)),
-        "pigments, Amy": (
-            "Amy's approximation",
-            _paints(pigments.dispersive(sensor), Pigment.amy_opaque_reflectance),
-        ),
-        "pigments, Duntley": (
-            "Duntley, in directed light",
-            lambda spectra, parts: diffuse_to_beam(
-                paints(beam_to_diffuse(spectra), parts)
-            ),
-        ),
-        "dyes": (
-            "dyes on white",
-            lambda spectra, parts: (
-                dye_transmittance(
-                    weighted_sum(dye_absorption(spectra), as_shares(parts)), 1.0
-                )
-                ** 2
-            ),
-        ),
-        "filters": ("filters", stack_filters),
+        "Kubelka–Munk": uplifted(paints),
+        "Kubelka–Munk, in oil (index 1.5)": uplifted(in_oil),
+        "Kubelka–Munk, S = √R": uplifted(_paints(SQUARE_ROOT)),
+        "Kubelka–Munk, S = 1": uplifted(_paints(CONSTANT)),
+        "Amy's approximation": uplifted(_paints(law, Pigment.amy_opaque_reflectance)),
+        "Duntley, in directed light": uplifted(in_beam),
+        "dyes on white": uplifted(dyes),
+        "filters": uplifted(stack_filters),
+        "average of RGB": average_areas,  # Fishkin 1983, eq. 8.3
+        "product of RGB": stack_filters,  # eq. 9.2
+        "RYB-HSL": lambda rgb, parts: mix_ryb(np.clip(rgb, 0, 1), parts),  # 10.4
+        "phosphor curves": mix_phosphors,  # chapter 7
     }
 
 
@@ -130,9 +98,12 @@ def _paints(
     scattering: Scattering,
     reflectance: Callable[[Pigment], Array] = Pigment.opaque_reflectance,
 ) -> Mix:
-    return lambda spectra, parts: reflectance(
-        pigments.from_opaque(spectra, scattering).mix(parts)
-    )
+    """Return the mixer of the reflectances of opaque paints."""
+
+    def mix(spectra: Array, parts: Array) -> Array:
+        return reflectance(from_opaque(spectra, scattering).mix(parts))
+
+    return mix
 
 
 def hsl_to_rgb(hsl: ArrayLike) -> Array:

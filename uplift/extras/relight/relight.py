@@ -6,13 +6,12 @@ page has two methods on the two sides of a line that moves.
 """
 
 import base64
+import io
 import math
-import tempfile
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import combinations
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -24,12 +23,9 @@ from uplift.colorimetry.illuminants import Illuminant
 from uplift.colorimetry.observer import display_sensors
 from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Array, Floats, Mask, StrPath
-from uplift.common.errors import OutputError
-from uplift.common.files import atomic_write
 from uplift.cube.data import common_sensor
 from uplift.extras.colour.light_sets import DESCRIPTIONS, RELIGHT_LIGHTS
 from uplift.extras.colour.srgb import to_display_codes
-from uplift.extras.images.image import read_error, utf8_name
 from uplift.extras.pages.figure import RAMP, ramp_codes, write_figure
 from uplift.extras.pages.html import render, resource
 from uplift.extras.pages.marks import error_map, picture
@@ -50,7 +46,6 @@ MAP_EXPONENT = 0.5
 # below.
 MIN_WHITE = 0.05
 JPEG_QUALITY = 92
-HEADER_BYTES = 1 << 12  # more than the header of an encoded image
 
 
 @dataclass(frozen=True, eq=False)
@@ -359,22 +354,10 @@ def _encoded(codes: NDArray[np.uint8], kind: str) -> str:
     """Encode 8-bit codes (height, width, 3) as the URL of a JPEG, or of a PNG, which
     has them exactly.
     """
-    import OpenImageIO
+    from PIL import Image
 
-    height, width, channels = codes.shape
-    spec = OpenImageIO.ImageSpec(width, height, channels, "uint8")
-    spec.attribute("Compression", f"jpeg:{JPEG_QUALITY}")
-    spec.attribute("jpeg:subsampling", "4:4:4")
-    with (
-        tempfile.TemporaryDirectory() as folder,
-        atomic_write(Path(folder) / f"image.{kind}") as path,
-    ):
-        # libjpeg ends the process if the file does not fit on the disk
-        path.write_bytes(bytes(2 * codes.nbytes + HEADER_BYTES))
-        image: Any = OpenImageIO.ImageOutput.create(kind)
-        is_open = image and image.open(utf8_name(path, OutputError), spec)
-        if not is_open or not image.write_image(codes):
-            raise OSError(read_error(image or OpenImageIO))
-        image.close()
-        content = base64.b64encode(path.read_bytes()).decode()
-        return f"data:image/{kind};base64,{content}"
+    file = io.BytesIO()
+    image = Image.fromarray(codes)
+    image.save(file, kind, quality=JPEG_QUALITY, subsampling=0)
+    content = base64.b64encode(file.getvalue()).decode()
+    return f"data:image/{kind};base64,{content}"

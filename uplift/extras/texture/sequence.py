@@ -3,8 +3,10 @@
 import contextlib
 import logging
 import os
+from collections import defaultdict
 from collections.abc import Generator, Iterable, Iterator
 from concurrent.futures import BrokenExecutor, CancelledError, Executor, as_completed
+from contextlib import AbstractContextManager
 from dataclasses import dataclass, field
 from functools import lru_cache
 from pathlib import Path
@@ -27,7 +29,7 @@ from uplift.extras.files.outputs import check_folder, make_folder
 from uplift.extras.images import exr_file
 from uplift.extras.images.converter import Converter
 from uplift.extras.images.image import open_image
-from uplift.extras.images.processes import TiedProcesses
+from uplift.extras.processes import TiedProcesses
 from uplift.extras.texture.conversion import SOURCE, Conversion, convert, source_stamp
 from uplift.extras.texture.emission import prepare_lights
 from uplift.extras.texture.encodings import PixelEncoding, Spectrum
@@ -35,10 +37,16 @@ from uplift.extras.texture.mask import prepare_masked
 from uplift.extras.texture.photographs import FurtherPictures
 from uplift.extras.texture.several_lights import prepare_several_lights
 from uplift.extras.texture.uplifter import prepare
-from uplift.lookup.cube import load
+from uplift.lookup.cube import Cube, load
 
 DASK_TIMEOUT = "10s"
 DASK_CLOSE_SECONDS = 2
+
+
+@lru_cache(maxsize=4)
+def load_cube(path: str | None) -> Cube:
+    """Load a cube, which each process does once."""
+    return load(path)
 
 
 @dataclass(frozen=True)
@@ -98,30 +106,44 @@ class TextureSettings:
         Converter
             The converter to pass to `convert`.
         """
-        shared: dict[str, Any] = {
-            name: getattr(self, name)
-            for name in ("depth", "encoding", "space", "threads")
-        }
+        encoding = self.pixel_encoding
         if self.emission:
-            at = getattr(self.pixel_encoding, "wavelengths", None)
-            return prepare_lights(load_emission(self.cubes[0]), at, **shared)
-        cubes = [load(path) for path in self.cubes]
-        if self.fill_missing:
-            cubes = [cube.fill_missing(threads=self.threads) for cube in cubes]
-        shared |= {"out_of_gamut": self.out_of_gamut, "errors": self.errors}
-        uplifters = [prepare(cube, self.pixel_encoding, **shared) for cube in cubes]
+            at = getattr(encoding, "wavelengths", None)
+            return prepare_lights(load_emission(self.cubes[0]), at, **self._shared)
+        uplifters = [
+            prepare(
+                cube,
+                encoding,
+                out_of_gamut=self.out_of_gamut,
+                errors=self.errors,
+                **self._shared,
+            )
+            for cube in self._load_cubes()
+        ]
+        mask = None if self.mask is None else Path(self.mask)
         if self.also is not None:
             return prepare_several_lights(
                 uplifters,
-                self.pixel_encoding,
+                encoding,
                 self.also,
                 errors=self.errors,
-                mask=None if self.mask is None else Path(self.mask),
+                mask=mask,
                 threads=self.threads,
             )
-        if self.mask is None:
-            return uplifters[0]
-        return prepare_masked(uplifters, Path(self.mask))
+        return uplifters[0] if mask is None else prepare_masked(uplifters, mask)
+
+    @property
+    def _shared(self) -> dict[str, Any]:
+        """What all converters have in common."""
+        names = ("depth", "encoding", "space", "threads")
+        return {name: getattr(self, name) for name in names}
+
+    def _load_cubes(self) -> list[Cube]:
+        """Load the cubes, with all nodes if those of a scene are to be added."""
+        cubes = [load_cube(path) for path in self.cubes]
+        if self.fill_missing:
+            cubes = [cube.fill_missing(threads=self.threads) for cube in cubes]
+        return cubes
 
 
 @dataclass(frozen=True)
@@ -269,37 +291,32 @@ def convert_all(
     if scheduler is None and processes == 1:
         yield from map(run, jobs)
         return
-    finished = list[Path]()
+    workers: AbstractContextManager[Executor] = (
+        TiedProcesses(processes) if scheduler is None else _dask_executor(scheduler)
+    )
+    finished = set[Path]()
     try:
-        with (
-            TiedProcesses(processes)
-            if scheduler is None
-            else _dask_executor(scheduler) as executor
-        ):
+        with workers as executor:
             for future in as_completed([executor.submit(run, job) for job in jobs]):
                 result = future.result()
                 if isinstance(result, Conversion):
-                    finished.append(result.target)
+                    finished.add(result.target)
                 yield result
     except Exception as error:
         is_of_dask = type(error).__module__.partition(".")[0] == "distributed"
         lost = BrokenExecutor | CancelledError | TimeoutError
         if not is_of_dask and not isinstance(error, lost):
             raise
-        raise _workers_lost(jobs, finished) from error
-
-
-def _workers_lost(jobs: list[Job], finished: list[Path]) -> TextureError:
-    for job in jobs:
-        if job.target not in finished:
-            with contextlib.suppress(OSError):
-                remove_stale(job.target, seconds=0)
-    return TextureError(
-        f"the workers ended unexpectedly; finished: {len(finished)} of "
-        f"{pluralise(len(jobs), 'texture')}",
-        code="workers-lost",
-        hint="resume with the others, with fewer processes if memory ran out",
-    )
+        for job in jobs:
+            if job.target not in finished:
+                with contextlib.suppress(OSError):
+                    remove_stale(job.target, seconds=0)
+        raise TextureError(
+            f"the workers ended unexpectedly; finished: {len(finished)} of "
+            f"{pluralise(len(jobs), 'texture')}",
+            code="workers-lost",
+            hint="resume with the others, with fewer processes if memory ran out",
+        ) from error
 
 
 def import_distributed() -> Any:
@@ -336,7 +353,7 @@ def _dask_executor(address: str) -> Iterator[Executor]:
                 client.close(timeout=DASK_CLOSE_SECONDS)
 
 
-def pending(jobs: Iterable[Job]) -> list[Job]:
+def pending(jobs: Iterable[Job], *, inputs: Iterable[StrPath | None] = ()) -> list[Job]:
     """Return the jobs that remain, and check that their targets can be written, without
     creating folders.
 
@@ -344,6 +361,8 @@ def pending(jobs: Iterable[Job]) -> list[Job]:
     ----------
     jobs : iterable of Job
         All jobs.
+    inputs : iterable of path-like
+        Files that are read besides those of the jobs.
 
     Returns
     -------
@@ -359,23 +378,24 @@ def pending(jobs: Iterable[Job]) -> list[Job]:
         written otherwise (``texture-differs``).
     """
     jobs = list(jobs)
-    inputs = []
+    read = list(inputs)
     for job in jobs:
-        inputs += [job.source, *job.also, *job.settings.cubes, job.settings.mask]
-    _check_targets([job.target for job in jobs], inputs, force=True)
+        read += [job.source, *job.also, *job.settings.cubes, job.settings.mask]
+    _check_targets(jobs, read, force=True)
     remaining = [job for job in jobs if not (job.resume and is_complete(job))]
-    _check_targets(
-        [job.target for job in remaining if not job.force], inputs, force=False
-    )
+    new = [job for job in remaining if not job.force]
+    _check_targets(new, read, force=False)
     return remaining
 
 
 def _check_targets(
-    targets: list[Path], inputs: Iterable[StrPath | None], *, force: bool
+    jobs: list[Job], inputs: Iterable[StrPath | None], *, force: bool
 ) -> None:
     """Check textures by their folders, which `run` creates."""
-    for folder in dict.fromkeys(target.parent for target in targets):
-        names = [target.name for target in targets if target.parent == folder]
+    folders = defaultdict[Path, list[str]](list)
+    for job in jobs:
+        folders[job.target.parent].append(job.target.name)
+    for folder, names in folders.items():
         check_folder(folder, names, inputs=inputs, force=force)
 
 

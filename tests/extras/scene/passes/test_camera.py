@@ -8,12 +8,12 @@ from tests.helpers import raises
 from uplift.colorimetry import observer
 from uplift.colorimetry.camera import Camera
 from uplift.common.errors import OptionError, UnknownNameError
+from uplift.extras.scene.passes.bands import PRESETS
 from uplift.extras.scene.passes.camera import with_camera
 from uplift.extras.scene.passes.choice import fit_bands
 from uplift.extras.scene.passes.decoder import decoder
 from uplift.extras.scene.passes.file import read_passes, write_passes
 from uplift.extras.scene.passes.passes import scaled_power
-from uplift.extras.scene.passes.presets import PRESETS
 
 LIGHTS = ("D65", "A", "FL11")
 NIKON = "Nikon 5100 (NPL)"

@@ -11,13 +11,12 @@ from tests.helpers import raises
 from uplift.colorimetry import observer
 from uplift.colorimetry.delta_e import delta_e_2000, lab
 from uplift.common.errors import OptionError, UnknownNameError
-from uplift.extras.scene.passes.bands import Bands
+from uplift.extras.scene.passes.bands import PRESETS, Bands
 from uplift.extras.scene.passes.choice import choose, fit_bands
 from uplift.extras.scene.passes.decoding import Grams
 from uplift.extras.scene.passes.light_paths import draw_paths
 from uplift.extras.scene.passes.materials import Materials, scene_materials
 from uplift.extras.scene.passes.passes import scaled_power
-from uplift.extras.scene.passes.presets import PRESETS
 from uplift.extras.scene.passes.search import Search
 from uplift.lookup.cube import load
 

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
+from uplift.extras.scene.passes.bands import PRESETS
 from uplift.extras.scene.passes.materials import library_materials
-from uplift.extras.scene.passes.presets import PRESETS
 from uplift.extras.scene.plan.passes_advice import advise_passes
 from uplift.extras.scene.plan.summary import notes, to_json
 

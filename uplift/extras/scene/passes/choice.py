@@ -16,9 +16,13 @@ from uplift.extras.scene.passes.bands import CHANNELS, MAX_PASSES, MAX_WIDTH, Ba
 from uplift.extras.scene.passes.decoding import Grams, light_projection
 from uplift.extras.scene.passes.light_paths import LightPaths, draw_paths
 from uplift.extras.scene.passes.materials import Materials
-from uplift.extras.scene.passes.passes import Passes, PassesLight, scaled_power
+from uplift.extras.scene.passes.passes import (
+    Passes,
+    PassesLight,
+    power_digest,
+    scaled_power,
+)
 from uplift.extras.scene.passes.search import FLOOR, Search, band_powers
-from uplift.extras.scene.passes.spectra_digest import power_digest
 
 TRAINING_PATHS = 300
 """Paths of each number of bounces that bands are chosen by."""
@@ -28,7 +32,7 @@ JUDGING_PATHS = 400
 """Paths of each number of bounces over held-out materials."""
 TRAINING_SEED = 1
 JUDGING_SEED = 2
-FINAL_ROUNDS = 60
+FINAL_ROUNDS = 80
 """Rounds of the fit of the chosen bands."""
 
 
@@ -136,11 +140,10 @@ def _fit(
     lights: Sequence[Illuminant],
 ) -> Passes:
     """Fit matrices and numbers over paths, and judge them over held-out materials."""
-    floor = FLOOR * band_powers(bands, paths.powers)
-    start = Search(paths).fit(bands).numbers
+    start = band_powers(bands, paths.powers)
     numbers = paths.numbers(bands.weights)
     grams = Grams.of(paths, numbers)
-    to_xyz, light_numbers, _ = grams.alternate(start, floor, FINAL_ROUNDS)
+    to_xyz, light_numbers, _ = grams.alternate(start, FLOOR * start, FINAL_ROUNDS)
     projection = light_projection(paths, numbers, to_xyz)
     # D diag(c) and l / c decode alike: c makes the numbers of equal energy ones.
     luminance = observer.matching_functions()[:, 1]
@@ -152,9 +155,10 @@ def _fit(
     projection = projection / scale[:, None]
     own = grams.decodings(light_numbers)
     judged = judging_paths(materials, lights)
-    lit = judged.numbers(bands.weights) * light_numbers[:, None]
-    errors = judged.by_bounce(judged.errors(lit @ to_xyz.T))
-    own_errors = judged.by_bounce(judged.errors(lit @ own.mT))
+    errors, own_errors = (
+        judged.by_bounce(judged.decoding_errors(bands.weights, light_numbers, matrix))
+        for matrix in (to_xyz, own)
+    )
     described = []
     for row, light in enumerate(dict.fromkeys(lights)):
         described.append(
@@ -196,8 +200,7 @@ def path_errors(
     """
     judged = judging_paths(materials, lights)
     numbers = np.stack([light.numbers for light in passes.lights])
-    lit = judged.numbers(passes.bands.weights) * numbers[:, None]
-    return judged.errors(lit @ passes.to_xyz.T)
+    return judged.decoding_errors(passes.bands.weights, numbers, passes.to_xyz)
 
 
 def rgb_errors(materials: Materials, lights: Sequence[Illuminant]) -> Array:

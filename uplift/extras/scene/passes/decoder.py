@@ -1,6 +1,7 @@
 """Decoding of the numbers of a pixel in all passes: a matrix to linear RGB or XYZ."""
 
 import json
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -44,7 +45,7 @@ class Decoder:
 
     passes: Passes
     matrix: Array
-    channels: tuple[str, str, str]
+    channels: tuple[str, ...]
     header: dict[str, Any]
 
     def decode(self, numbers: Values) -> tuple[Floats, Counts]:
@@ -107,12 +108,9 @@ def decoder(
     if space == CAMERA:
         return _camera_decoder(passes)
     to_xyz = passes.to_xyz if light is None else passes.light(light).to_xyz
-    settings = {"as": "decoded passes", "space": space}
-    settings |= {} if light is None else {"light": light}
-    header: dict[str, Any] = {ATTRIBUTE: pass_mark(passes, passes.count)}
+    stated = {"space": space} | ({} if light is None else {"light": light})
     if space == XYZ:
-        header["uplift.texture"] = json.dumps(settings)
-        return Decoder(passes, to_xyz, ("X", "Y", "Z"), header)
+        return _decoder(passes, to_xyz, "XYZ", stated)
     target = find_space(space)
     if target.floats_are_codes or target.to_gamut is not None:
         raise OptionError(
@@ -120,13 +118,12 @@ def decoder(
             hint="name a linear space, such as sRGB or ACEScg",
         )
     screen = observer.sensor(illuminant=white or DEFAULT_ILLUMINANT)
-    settings |= {} if white is None else {"white": screen.illuminant}
-    header["uplift.texture"] = json.dumps(settings)
-    header["chromaticities"] = exr.chromaticities(target.gamut)
+    stated |= {} if white is None else {"white": screen.illuminant}
     # White is (1, 1, 1) in both spaces.
     to_space = conversion(observer.sensor(), target.gamut)
     matrix = to_space @ screen.xyz_to_rgb @ to_xyz
-    return Decoder(passes, matrix, ("R", "G", "B"), header)
+    chromaticities = exr.chromaticities(target.gamut)
+    return _decoder(passes, matrix, "RGB", stated, chromaticities=chromaticities)
 
 
 def _camera_decoder(passes: Passes) -> Decoder:
@@ -135,9 +132,21 @@ def _camera_decoder(passes: Passes) -> Decoder:
             "the passes have no camera",
             hint="choose them with a camera",
         )
-    settings = {"as": "decoded passes", "space": CAMERA, "camera": passes.camera.name}
+    stated = {"space": CAMERA, "camera": passes.camera.name}
+    return _decoder(passes, passes.camera.matrix, "RGB", stated)
+
+
+def _decoder(
+    passes: Passes,
+    matrix: Array,
+    channels: str,
+    stated: Mapping[str, str],
+    **attributes: Any,
+) -> Decoder:
+    """Make a decoder whose header states how it was made."""
     header = {
         ATTRIBUTE: pass_mark(passes, passes.count),
-        "uplift.texture": json.dumps(settings),
+        "uplift.texture": json.dumps({"as": "decoded passes", **stated}),
+        **attributes,
     }
-    return Decoder(passes, passes.camera.matrix, ("R", "G", "B"), header)
+    return Decoder(passes, matrix, tuple(channels), header)

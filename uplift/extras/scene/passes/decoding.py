@@ -51,26 +51,20 @@ class Grams:
         constant = float((pulled * paths.xyz).sum())
         return cls(products, targets, constant, metric.shape[0] * metric.shape[1])
 
-    def decoding(self, numbers: Array) -> Array:
-        """Return the matrix D (3, K) that all lights, with numbers (L, K), share."""
+    def decoding(self, numbers: Array, lights: slice = slice(None)) -> Array:
+        """Return the matrix D (3, K) that lights, with numbers (L, K), share."""
+        numbers = numbers[lights]
+        products = self.products[lights]
         count = 3 * numbers.shape[1]
-        normal = np.einsum("lk,lm,labkm->akbm", numbers, numbers, self.products)
-        right = np.einsum("lk,lak->ak", numbers, self.targets)
+        normal = np.einsum("lk,lm,labkm->akbm", numbers, numbers, products)
+        right = np.einsum("lk,lak->ak", numbers, self.targets[lights])
         solution = _solve(normal.reshape(count, count), right.ravel())
         return solution.reshape(3, -1)
 
     def decodings(self, numbers: Array) -> Array:
         """Return a matrix (L, 3, K) for each light with numbers (L, K)."""
-        matrices = [
-            self.only(row).decoding(light[None]) for row, light in enumerate(numbers)
-        ]
-        return np.stack(matrices)
-
-    def only(self, row: int) -> "Grams":
-        """Sums of one of the lights."""
-        return Grams(
-            self.products[row : row + 1], self.targets[row : row + 1], 0.0, self.paths
-        )
+        rows = range(len(numbers))
+        return np.stack([self.decoding(numbers, slice(row, row + 1)) for row in rows])
 
     def light_numbers(self, decoding: Array, floor: Array) -> tuple[Array, float]:
         """Return the numbers (L, K), at least ``floor``, that suit a matrix D (3, K),

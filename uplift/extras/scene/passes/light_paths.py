@@ -69,6 +69,13 @@ class LightPaths:
         """ΔE00 (L, n) of other XYZ (L, n, 3) of the paths."""
         return delta_e_2000(self.lab, lab(xyz, self.whites))
 
+    def decoding_errors(self, weights: Array, lights: Array, to_xyz: Array) -> Array:
+        """ΔE00 (L, n) of bands of weights (K, 81) and lights of numbers (L, K), decoded
+        by a matrix (3, K) for all lights, or by matrices (L, 3, K).
+        """
+        lit = self.numbers(weights) * lights[:, None]
+        return self.errors(lit @ to_xyz.mT)
+
     def by_bounce(self, errors: Array) -> Array:
         """Mean errors (L, 4) of one to four bounces, of errors (L, n) of paths."""
         means = [

@@ -7,6 +7,7 @@ sharp color primaries"; Bergner et al. 2004. Here bands are chosen so that produ
 one to four reflectances keep their colours.
 """
 
+import hashlib
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
@@ -19,7 +20,9 @@ from uplift.common.arrays import Array
 from uplift.common.errors import unknown_name
 from uplift.extras.files.spec import SPEC, Matrix, NotNegative, NotNegativeRow
 from uplift.extras.scene.passes.bands import Bands
-from uplift.extras.scene.passes.spectra_digest import power_digest
+
+STEPS = 1_000_000
+"""Steps of power up to the largest, by which digests do not depend on rounding."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -191,3 +194,13 @@ def scaled_power(illuminant: Illuminant) -> Array:
     power = observer.illuminant_spd(illuminant)
     luminance = observer.matching_functions()[:, 1]
     return power / (power @ luminance)
+
+
+def power_digest(power: Array) -> str:
+    """SHA-256 of a power (81,) relative to its largest value.
+
+    >>> power_digest(np.array([1.0, 2.0])) == power_digest(np.array([2.0, 4.0]))
+    True
+    """
+    relative = np.rint(STEPS * power / power.max()).astype("<u4")
+    return hashlib.sha256(relative.tobytes()).hexdigest()

@@ -9,10 +9,9 @@ from uplift.common.arrays import Array
 from uplift.common.errors import OptionError
 from uplift.extras.papers.representations import samples
 from uplift.extras.papers.representations.samples import Representation
-from uplift.extras.scene.passes.bands import CHANNELS
+from uplift.extras.scene.passes.bands import CHANNELS, PRESETS
 from uplift.extras.scene.passes.choice import fit_bands
 from uplift.extras.scene.passes.materials import library_materials
-from uplift.extras.scene.passes.presets import PRESETS
 from uplift.models.arithmetic import blocked_matmul
 
 LIGHTS = ("D65", "A", "FL2", "FL11", "LED-B3", "HP1")

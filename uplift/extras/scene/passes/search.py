@@ -6,6 +6,7 @@ rounding does, so the search ends at the same bands on every processor.
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import reduce
 
 import numpy as np
 
@@ -58,22 +59,26 @@ def band_powers(bands: Bands, powers: Array) -> Array:
     return np.where(scale > 0, means / np.where(scale > 0, scale, 1), 1.0)
 
 
-class Search:
-    """Candidates over the paths of a scene."""
+def _better(known: Candidate, trial: Candidate) -> Candidate:
+    """Return a candidate, or another one that gains enough."""
+    return trial if trial.error < known.error * (1 - MIN_GAIN) else known
 
-    def __init__(self, paths: LightPaths, width: int | None = None) -> None:
-        self._paths = paths
-        self._width = width
+
+@dataclass(frozen=True, eq=False)
+class Search:
+    """Candidates over the paths of a scene, of one ``width`` if it is given."""
+
+    paths: LightPaths
+    width: int | None = None
 
     def fit(
         self, bands: Bands, numbers: Array | None = None, rounds: int = FIRST_ROUNDS
     ) -> Candidate:
         """Fit bands, from the numbers (L, K) of similar ones if there are any."""
-        powers = band_powers(bands, self._paths.powers)
-        if numbers is None:
-            numbers = powers
-        grams = Grams.of(self._paths, self._paths.numbers(bands.weights))
-        _, numbers, error = grams.alternate(numbers, FLOOR * powers, rounds)
+        powers = band_powers(bands, self.paths.powers)
+        start = powers if numbers is None else numbers
+        grams = Grams.of(self.paths, self.paths.numbers(bands.weights))
+        _, numbers, error = grams.alternate(start, FLOOR * powers, rounds)
         return Candidate(bands, numbers, error)
 
     def best(self, count: int, progress: ProgressCallback) -> Candidate:
@@ -84,11 +89,7 @@ class Search:
             progress(Progress("starts", done, len(starts)))
             candidates.append(self.descend(self.fit(start)))
         progress(Progress("starts", len(starts), len(starts)))
-        best = candidates[0]
-        for candidate in candidates[1:]:
-            if candidate.error < best.error * (1 - MIN_GAIN):
-                best = candidate
-        return best
+        return reduce(_better, candidates)
 
     def descend(self, candidate: Candidate) -> Candidate:
         """Take steps of decreasing length as long as they lower the error."""
@@ -107,8 +108,7 @@ class Search:
                 if bands is None:
                     continue
                 trial = self.fit(bands, candidate.numbers, ROUNDS)
-                if trial.error < candidate.error * (1 - MIN_GAIN):
-                    candidate = trial
+                candidate = _better(candidate, trial)
         return candidate
 
     def _moved(self, bands: Bands, row: int, step: int) -> Bands | None:
@@ -118,19 +118,18 @@ class Search:
         if row == len(bands):
             half = int(np.sign(step)) * max(abs(step) // 2, 1)
             width = bands.width + half
-            if self._width is not None or not 0 <= width <= MAX_SEARCHED_WIDTH:
+            if self.width is not None or not 0 <= width <= MAX_SEARCHED_WIDTH:
                 return None
             return Bands(bands.centres, width)
         centres = np.array(bands.centres)
         centres[row] += step
-        low = observer.START + MARGIN
-        high = observer.END - MARGIN
-        if not low <= centres[row] <= high or (np.diff(centres) < MIN_DISTANCE).any():
+        is_inside = observer.START + MARGIN <= centres[row] <= observer.END - MARGIN
+        if not is_inside or (np.diff(centres) < MIN_DISTANCE).any():
             return None
         return Bands(tuple(centres.tolist()), bands.width)
 
     def _starts(self, count: int) -> Iterator[Bands]:
-        widths = START_WIDTHS if self._width is None else (self._width,)
+        widths = START_WIDTHS if self.width is None else (self.width,)
         for low, high in RANGES:
             spacing = (high - low) / count
             centres = np.rint(low + (np.arange(count) + 0.5) * spacing)

@@ -9,9 +9,9 @@ import numpy as np
 
 from uplift.colorimetry.illuminants import Illuminant
 from uplift.common.arrays import Array
+from uplift.extras.scene.passes.bands import PRESETS
 from uplift.extras.scene.passes.choice import fit_bands, path_errors
 from uplift.extras.scene.passes.materials import Materials, halves, library_materials
-from uplift.extras.scene.passes.presets import PRESETS
 
 MIN_MATERIALS = 8
 """Fewest spectra that are divided into halves; of fewer, all are in both."""

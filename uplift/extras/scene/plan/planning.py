@@ -245,17 +245,15 @@ def no_candidate(scene: SceneFile, measured: Sequence[Candidate]) -> PlanFileErr
     enough = sufficient(measured, scene.tolerance, scene.minimise, {})
     if enough:
         cost = enough[0].cost
-        over = over_limits(enough[0], scene.limits)
-        allowance = cost._replace(**scene.limits)
-        needs, allowed = (
-            " and ".join(cost_text(costs, key) for key in over)
-            for costs in (cost, allowance)
+        over = over_limits(enough[0], scene.limits)[0]
+        needed, allowed = (
+            cost_text(costs, over) for costs in (cost, cost._replace(**scene.limits))
         )
         problem = (
-            f"the cheapest within {scene.tolerance:g} needs {needs}; limits allow "
+            f"the cheapest within {scene.tolerance:g} needs {needed}; limits allow "
             f"{allowed}"
         )
-        hint = f"raise limits.{over[0]} or the tolerance"
+        hint = f"raise limits.{over} or the tolerance"
     else:
         best = min(measured, key=attrgetter("error.quantile")).error.worst
         problem = (

@@ -9,18 +9,18 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from uplift.common.errors import OutputError
 from uplift.common.files import file_digest
 from uplift.common.text import pluralise
 from uplift.common.version import version
-from uplift.extras.pages.format import format_error, format_size
-from uplift.extras.scene.plan.candidates import INDEX, SPECTRUM, Candidate, Cost
+from uplift.extras.pages.format import format_error
+from uplift.extras.scene.plan.candidates import SPECTRUM, Candidate, Cost
 from uplift.extras.scene.plan.files import FORMAT, SUFFIX, SceneFile, cube_name
-from uplift.extras.scene.plan.passes_advice import PassesAdvice
 from uplift.extras.scene.plan.planning import Plan, cost_text
 from uplift.extras.scene.plan.search import cheapest_first
 
-HEADINGS = ("ΔE00", "memory", "time", "samples", "cube", "traced", "pixel")
 CLEARLY_SMALLER = 0.95
 """Share of the error of a cheaper candidate that is worth a row."""
 SHARE = 0.5
@@ -32,40 +32,33 @@ CUBE_KEYS = ("model", "coefficients", "warp", "dim", "axis")
 SCENE_KEYS = ("tolerance", "quantile", "encoding", "minimise", "limits")
 
 
-def front_rows(plan: Plan) -> list[Candidate]:
+def front_rows(plan: Plan) -> list[dict[str, Any]]:
     """The choice, and candidates whose error is clearly below that of all cheaper ones,
-    by what the scene minimises.
+    by what the scene minimises, as JSON values with a mark of the choice.
     """
-    front = list[Candidate]()
-    smallest = float("inf")
+    rows = []
+    smallest = np.inf
     for candidate in cheapest_first(plan.measured, plan.scene.minimise):
         error = candidate.error.quantile
-        if candidate is plan.chosen or error < CLEARLY_SMALLER * smallest:
-            front.append(candidate)
+        is_chosen = candidate is plan.chosen
+        if is_chosen or error < CLEARLY_SMALLER * smallest:
             smallest = min(smallest, error)
-    return front
-
-
-def front_row(measured: Candidate) -> tuple[str, ...]:
-    """Texts of a candidate in the order of `HEADINGS`."""
-    cost = measured.cost
-    words = (measured.cube_name, measured.traced, measured.pixel.name)
-    costs = (format_size(cost.memory), f"{cost.time:,.0f}", f"{cost.samples:g}")
-    return format_error(measured.error.quantile), *costs, *words
+            rows.append({"chosen": "→" * is_chosen, **_candidate(candidate)})
+    return rows
 
 
 def verdict(plan: Plan) -> str:
     """Errors and tolerance in one phrase."""
-    end = (
-        ""
-        if plan.within_tolerance
-        else "; the tolerance is EXCEEDED: plan for a smaller one"
+    errors = plan.chosen.error.quantile, plan.confirmed.quantile
+    predicted, confirmed = map(format_error, errors)
+    worst = plan.confirmed.worst
+    text = (
+        f"ΔE00 {predicted} predicted, {confirmed} confirmed on other pixels, tolerance "
+        f"{plan.scene.tolerance:g} ({worst.group} under {worst.light})"
     )
-    return (
-        f"ΔE00 {format_error(plan.chosen.error.quantile)} predicted, "
-        f"{format_error(plan.confirmed.quantile)} confirmed "
-        f"on other pixels, tolerance {plan.scene.tolerance:g}{end}"
-    )
+    if plan.within_tolerance:
+        return text
+    return f"{text}; the tolerance is EXCEEDED: plan for a smaller one"
 
 
 def notes(plan: Plan) -> list[str]:
@@ -83,13 +76,19 @@ def notes(plan: Plan) -> list[str]:
             "Without spectra, by RGB and the best 3 × 3 matrix per light, ΔE00 is "
             f"{rgb}."
         )
-    if plan.chosen.pixel.form == INDEX and plan.spectra is not None:
+    if plan.spectra is not None:
         lines.append(
             f"The textures have {pluralise(len(plan.spectra[0]), 'colour')}: a list "
             "of spectra suffices."
         )
     if plan.passes is not None:
-        lines.append(_passes_note(plan.passes))
+        count = "1 pass" if plan.passes.count == 1 else f"{plan.passes.count} passes"
+        enough = "suffice ('uplift passes')" if plan.passes.within else "do not suffice"
+        error = format_error(plan.passes.error)
+        lines.append(
+            f"Of an RGB renderer {count} {enough}: ΔE00 {error} of one to four "
+            "reflections."
+        )
     known = plan.expected_error
     if known is not None:  # RGB alone does not identify a material
         lines.append(
@@ -102,33 +101,9 @@ def notes(plan: Plan) -> list[str]:
     return lines
 
 
-def _passes_note(advice: PassesAdvice) -> str:
-    count = "1 pass" if advice.count == 1 else f"{advice.count} passes"
-    error = f"ΔE00 {format_error(advice.error)} of one to four reflections"
-    if advice.within:
-        return f"Of an RGB renderer {count} suffice ('uplift passes'): {error}."
-    return f"Of an RGB renderer {count} do not suffice: {error}."
-
-
 def _costs(candidate: Candidate) -> str:
     memory, time, samples = (cost_text(candidate.cost, key) for key in Cost._fields)
     return f"{memory}, {time} and {samples}"
-
-
-def describe_error(plan: Plan) -> str:
-    """Definition of the errors."""
-    scene = plan.scene
-    materials = " and of the atlas's entries" if scene.atlases else ""
-    lights = ", ".join(map(str, scene.lights))
-    measured = ", entries with their measurements" if scene.atlases else ""
-    return (
-        f"ΔE00 of {100 * scene.quantile:.4g} % of the textures' pixels{materials} is "
-        f"at most this value, under the worst of {lights}. Pixels are compared with a "
-        "cube of the finest lattice and the most coefficients at all "
-        f"wavelengths{measured}. {len(plan.measured):,} of "
-        f"{pluralise(plan.considered, 'candidate')} were measured; the bounds of the "
-        "others exclude them."
-    )
 
 
 def check_path(scene: SceneFile, path: Path) -> None:
@@ -151,72 +126,63 @@ def to_json(plan: Plan, path: Path) -> dict[str, Any]:
     Paths of textures and atlases are relative to the folder of ``path``, the file.
     Raises `OutputError` for others.
     """
-    chosen = plan.chosen
     check_path(plan.scene, path)
+    scene = plan.scene
+    chosen = plan.chosen
+    predicted, confirmed = plan.chosen.error, plan.confirmed
+    spectra = None
+    if plan.spectra is not None:
+        pairs = zip(*map(np.ndarray.tolist, plan.spectra), strict=True)
+        spectra = [{"rgb": rgb, "reflectance": values} for rgb, values in pairs]
     return {
         "format": FORMAT,
         "uplift": version(),
-        "scene": _scene_json(plan.scene, path),
+        "scene": {
+            "file": scene.path.name,
+            "lights": list(map(str, scene.lights)),
+            **_fields(scene, SCENE_KEYS),
+            "textures": _sources(scene.textures, path),
+            "atlases": _sources(scene.atlases, path),
+        },
         "name": chosen.name,
         "build": chosen.cube and chosen.cube.record(),
         "cells": "sparse" if chosen.sparse else "whole",
         "texture": asdict(chosen.pixel),
-        "rendering": _rendering_json(plan),
-        "spectra": _spectra_json(plan),
-        "error": _error_json(plan),
+        "rendering": _rendering(plan),
+        "spectra": spectra,
+        "error": {
+            "predicted": asdict(predicted.worst) | asdict(predicted),
+            "confirmed": asdict(confirmed.worst) | asdict(confirmed),
+            "within": plan.within_tolerance,
+            "without_spectra": plan.without_spectra.quantile,
+            "expected_of_measurements": plan.expected_error,
+        },
         "passes": plan.passes and asdict(plan.passes),
         "cost": chosen.cost._asdict(),
         "search": {"considered": plan.considered, "measured": len(plan.measured)},
-        "front": list(map(_candidate_json, plan.front)),
+        "front": list(map(_candidate, plan.front)),
         "lines": list(commands(plan, path)),
     }
 
 
-def _scene_json(scene: SceneFile, path: Path) -> dict[str, Any]:
-    return {
-        "file": scene.path.name,
-        "lights": list(map(str, scene.lights)),
-        **{key: getattr(scene, key) for key in SCENE_KEYS},
-        "textures": _sources(scene.textures, path),
-        "atlases": _sources(scene.atlases, path),
-    }
+def _fields(record: object, keys: Iterable[str]) -> dict[str, Any]:
+    return {key: getattr(record, key) for key in keys}
 
 
-def _spectra_json(plan: Plan) -> list[dict[str, Any]] | None:
-    if plan.spectra is None:
-        return None
-    return [
-        {"rgb": rgb.tolist(), "reflectance": reflectance.tolist()}
-        for rgb, reflectance in zip(*plan.spectra, strict=True)
-    ]
-
-
-def _error_json(plan: Plan) -> dict[str, Any]:
-    predicted = plan.chosen.error
-    confirmed = plan.confirmed
-    return {
-        "predicted": asdict(predicted.worst) | asdict(predicted),
-        "confirmed": asdict(confirmed.worst) | asdict(confirmed),
-        "within": plan.within_tolerance,
-        "without_spectra": plan.without_spectra.quantile,
-        "expected_of_measurements": plan.expected_error,
-    }
-
-
-def _candidate_json(candidate: Candidate) -> dict[str, Any]:
+def _candidate(candidate: Candidate) -> dict[str, Any]:
     cube = candidate.cube
     return {
         "name": candidate.name,
         "rendering": candidate.traced,
         "pixel": asdict(candidate.pixel),
-        "cube": cube and {key: getattr(cube, key) for key in CUBE_KEYS},
+        "cube": cube and _fields(cube, CUBE_KEYS),
         "sparse": candidate.sparse,
         **candidate.cost._asdict(),
         "error": asdict(candidate.error.worst),
     }
 
 
-def _rendering_json(plan: Plan) -> dict[str, Any]:
+def _rendering(plan: Plan) -> dict[str, Any]:
     """Wavelengths, their weights and the powers of lights, or matrices of RGB."""
     if plan.chosen.rendering is None:
         lights = map(str, plan.scene.lights)

@@ -1,5 +1,5 @@
-"""Errors of tables of colours: the mean of random colours, and the largest that a
-search finds.
+"""Tables over a regular grid: how many nodes they have and where, and errors of their
+colours, the mean of random ones and the largest that a search finds.
 """
 
 from collections.abc import Callable
@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from uplift.common.arrays import Array
+from uplift.common.errors import OptionError
 from uplift.common.text import round_up
 from uplift.extras.colour.srgb import decode, encode
 
@@ -20,6 +21,25 @@ TRIALS = 8
 """Trials near each of these codes in a round."""
 STEPS = np.geomspace(1 / 16, 1 / 1024, 12)
 """Largest changes of codes by round."""
+
+MIN_RES = 2
+
+
+def check_res(res: int, usual: int, most: int) -> None:
+    """Raise `OptionError` unless a table can have so many nodes along each axis."""
+    if not MIN_RES <= res <= most:
+        raise OptionError(
+            f"res must be from {MIN_RES} to {most}, got {res}", hint=f"{usual} is usual"
+        )
+
+
+def grid_nodes(axis: Array, rank: int) -> Array:
+    """Return the points (n ** rank, rank) of a grid with the same n places along each
+    axis, the last axis fastest.
+    """
+    grid = np.meshgrid(*[axis] * rank, indexing="ij")
+    return np.stack(grid, axis=-1).reshape(-1, rank)
+
 
 ErrorFunction = Callable[[Array], Array]
 """From codes (n, 3) in [0, 1] to errors (n,)."""
