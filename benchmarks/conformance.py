@@ -5,7 +5,7 @@ docs/guides/conformance.md.
 import runpy
 import tempfile
 from collections.abc import Callable, Iterator
-from dataclasses import asdict, replace
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
@@ -18,7 +18,7 @@ from uplift.cube.data import CubeData, EntrySpectra
 from uplift.extras.export.program import write_program
 from uplift.extras.export.runtime import HEADER, write_header
 from uplift.extras.files.csv import csv_text
-from uplift.extras.images.processes import call_in_child
+from uplift.extras.processes import call_in_child
 from uplift.extras.report.conformance import (
     PICTURE_LIMITS,
     Conformance,
@@ -134,7 +134,7 @@ def as_row(name: str, result: Conformance) -> Row:
         "lookup": name,
         "light": result.light,
         "mode": result.mode,
-        **asdict(result.differences),
+        **result.differences._asdict(),
         "verdict": "passed" if result.passed else "failed",
         "explanation": result.explanation,
     }

@@ -4,21 +4,21 @@ what other programs make of it.
 
 from __future__ import annotations
 
-from dataclasses import asdict
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from uplift.colorimetry.illuminants import Illuminant
 
-from .output.console import make_table, paragraph, print_json, say, show
+from .output.console import paragraph, say
 from .output.diagnostics import FAILED_CHECK
+from .output.table import Table, print_result
 from .outputs import check_folder, check_outputs
 
 if TYPE_CHECKING:
-    from uplift.extras.report.conformance import Conformance
     from uplift.lookup.cube import Cube
 
 WORST = 5
 """Number of the worst patches that are named."""
+FIGURES = {"mean": "mean", "p95": "95 %", "largest": "largest"}
 
 
 def write(cube: str | None, folder: str, *, force: bool) -> None:
@@ -46,10 +46,27 @@ def judge(
 
     check_outputs(plot_path)
     conformance = check_renderer(path, _load(cube), light)
-    if style == "json":
-        print_json(_record(conformance, path))
-    else:
-        _print(conformance, path)
+    record = {"file": path, **conformance.to_json(WORST)}
+    rows = [
+        {"row": f"to mode {conformance.mode}", **record["delta_e"]},
+        {"row": "limit", **record["limits"]},
+    ]
+    headings = {"row": f"ΔE00 under {conformance.light}"} | FIGURES
+    worst = Table(
+        record["worst"],
+        {
+            "patch": "row, column",
+            "name": "worst patches",
+            "rgb": "linear RGB",
+            "delta_e": "ΔE00",
+        },
+        formats={"rgb": ".4f", "patch": _place},
+    )
+    print_result(style, record, Table(rows, headings), worst)
+    if style != "json":
+        say(f"{path}: {'passed' if conformance.passed else 'FAILED'}")
+        if conformance.explanation:
+            paragraph(f"These are the colours if {conformance.explanation}.")
     if plot_path is not None:
         from uplift.extras.pages.figure import write_figure
         from uplift.extras.report.conformance_plot import plot_conformance
@@ -65,51 +82,6 @@ def _load(cube: str | None) -> Cube:
     from uplift.lookup.cube import load
 
     return build_cube() if cube is None else load(cube)
-
-
-def _record(conformance: Conformance, path: str) -> dict[str, Any]:
-    worst = []
-    for number in conformance.worst(WORST):
-        row = {
-            "patch": number,
-            "name": conformance.chart.names[number],
-            "rgb": conformance.chart.rgb[number].tolist(),
-            "delta_e": float(conformance.delta_e[number]),
-        }
-        worst.append(row)
-    return {
-        "file": path,
-        "passed": conformance.passed,
-        "light": conformance.light,
-        "mode": conformance.mode,
-        "delta_e": asdict(conformance.differences),
-        "limits": asdict(conformance.limits),
-        "brightness": conformance.brightness,
-        "explanation": conformance.explanation,
-        "worst": worst,
-    }
-
-
-def _print(conformance: Conformance, path: str) -> None:
-    record = _record(conformance, path)
-    table = make_table(
-        (f"ΔE00 under {conformance.light}",), ("mean", "95 %", "largest")
-    )
-    table.add_row(f"to mode {conformance.mode}", *_cells(record["delta_e"]))
-    table.add_row("limit", *_cells(record["limits"]), style="dim")
-    worst = make_table(("row, column", "worst patches", "linear RGB"), ("ΔE00",))
-    for patch in record["worst"]:
-        place = _place(patch["patch"])
-        rgb = " ".join(map("{:.4f}".format, patch["rgb"]))
-        worst.add_row(place, patch["name"], rgb, f"{patch['delta_e']:.3f}")
-    show(table, worst)
-    say(f"{path}: {'passed' if conformance.passed else 'FAILED'}")
-    if conformance.explanation:
-        paragraph(f"These are the colours if {conformance.explanation}.")
-
-
-def _cells(differences: dict[str, float]) -> list[str]:
-    return [f"{value:.3f}" for value in differences.values()]
 
 
 def _place(number: int) -> str:

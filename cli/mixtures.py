@@ -14,7 +14,7 @@ from .output.answers import (
     print_spectrum,
 )
 from .output.console import print_json
-from .output.table import Table, swatch
+from .output.table import Format, Table, swatch
 
 if TYPE_CHECKING:
     from uplift.common.arrays import Array
@@ -91,7 +91,7 @@ def print_theories(recipe: Recipe, cube: Cube, method: str, style: str) -> None:
         colour = map_to_gamut(mixed, sensor, method).rgb[0]
         rows.append({"theory": title, **_colour(cube, colour)})
     headings = {"theory": "theory", "hex": "hex", "rgb": "linear RGB"}
-    formats = {
+    formats: dict[str, Format] = {
         "hex": lambda code: swatch(code, code),
         "rgb": ".6f",
     }

@@ -10,7 +10,7 @@ from uplift.common.text import pluralise
 
 from .mixtures import MIXTURE_MAPPING
 from .output.console import paragraph, print_fields, print_json, say
-from .output.table import Table, swatch
+from .output.table import Format, Table, swatch
 
 if TYPE_CHECKING:
     from uplift.common.arrays import Array
@@ -84,7 +84,7 @@ def print_paints(paints: Paints) -> None:
         headings |= {"S": "± S", "K": "± K"}
     cells = zip(*columns.values(), strict=True)
     rows = [dict(zip(columns, row, strict=True)) for row in cells]
-    formats = {
+    formats: dict[str, Format] = {
         "colour": coloured,
         "tint": coloured,
         "strength": ".2g",
@@ -180,7 +180,7 @@ def print_recipes(
         {"recipe": str(recipe), **row, **by_light}
         for recipe, row, by_light in zip(recipes, rows, errors, strict=True)
     ]
-    formats = {"colour": coloured, "cost": ".3g"}
+    formats: dict[str, Format] = {"colour": coloured, "cost": ".3g"}
     Table(lines, headings, digits=".2f", formats=formats).print_text()
     if recipes[0].error > REACHED:
         paragraph(

@@ -8,6 +8,7 @@ import sys
 import warnings
 from collections.abc import Iterator
 from dataclasses import replace
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -17,6 +18,7 @@ import uplift
 from uplift.common.errors import UpliftError, UpliftWarning
 from uplift.cube.data import CubeData
 from uplift.cube.schema import POINTS
+from uplift.extras.colour.query import locate_xyz, query_blocks
 from uplift.lattice.point_table import ABSENT_VALUES
 from uplift.lookup.cube import Cube
 
@@ -94,3 +96,32 @@ def near_black(data: CubeData) -> np.ndarray:
     """Mask (dim³,) of the nodes in the lowest quarter of every axis."""
     position = data.lattice.position(np.arange(data.lattice.size))
     return (position <= data.lattice.dim // 4).all(axis=1)
+
+
+def query(cube, rgb, wavelengths=None, mode="spectra", **options):
+    """The answers to colours in full detail, one by one."""
+    for block in query_blocks(cube, np.asarray(rgb), wavelengths, mode, **options):
+        for row, entry in enumerate(block.entry):
+            yield SimpleNamespace(
+                rgb=block.rgb[row],
+                reflectance=block.reflectance[row],
+                round_trip=block.round_trip[row],
+                delta_e_2000=block.delta_e_2000[row],
+                xyz=block.xyz[row],
+                cell=block.cell[row],
+                statuses=block.statuses[row],
+                entry=entry,
+                errors=block.errors[row].tolist(),
+                light_errors={
+                    n: x[row].tolist() for n, x in block.light_errors.items()
+                },
+                realisable=block.realisable[row],
+            )
+
+
+def query_xyz(cube, xyz, lights=()):
+    """The answers to colours by XYZ."""
+    rgb, requested, outside = locate_xyz(cube, xyz)
+    return list(
+        query(cube, rgb, requested_rgb=requested, outside=outside, lights=lights)
+    )

@@ -246,7 +246,7 @@ def command(
     notes = [*task.notes, *notes]
     cube.save(path, force=force)
     if slices is not None:
-        from uplift.extras.images.exr import write_slices
+        from uplift.extras.images.slices import write_slices
 
         write_slices(cube.data, slices, force=force)
     if quiet:

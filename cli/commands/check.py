@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import warnings
-from collections import defaultdict
-from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import asdict
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -15,9 +15,10 @@ from uplift.colorimetry.illuminants import Illuminant
 from uplift.common.errors import UpliftError, UpliftWarning
 
 from .. import conformance, option_types, options
-from ..output.console import make_table, paragraph, print_json, say, show
+from ..output.console import paragraph, say
 from ..output.diagnostics import BAD_INPUT, FAILED_CHECK, CommandFailure, error_object
 from ..output.progress import progress_bar
+from ..output.table import Format, Table, print_result
 from ..startup import enable_jit_cache
 
 if TYPE_CHECKING:
@@ -26,17 +27,24 @@ if TYPE_CHECKING:
     from uplift.common.progress import ProgressCallback
     from uplift.lookup.cube import Cube
 
-REBUILDING = ("files", "folders", "update", "style", "quiet")
+REBUILDING = ("folders", "update", "quiet")
 """Parameters that apply to cubes which are rebuilt."""
-APPLICABLE = {
-    "kit": ("files", "force"),
-    "renderer": ("files", "light", "style", "plot_path", "force"),
-}
-"""Parameters that apply to other purposes."""
 NEEDS = {
-    "light": "needs --renderer",
-    "plot_path": "needs --renderer",
-    "force": "needs --kit or --plot",
+    "light": "--renderer",
+    "plot_path": "--renderer",
+    "force": "--kit or --plot",
+}
+HEADINGS = {
+    "cube": "cube",
+    "result": "result",
+    "atlas": "atlas",
+    "nodes": "nodes",
+    "rgb": "RGB",
+    "spectra_max": "spectra",
+    "spectra_rms": "rms",
+    "delta_e_D65": "ΔE D65",
+    "delta_e_A": "A",
+    "delta_e_FL11": "FL11",
 }
 
 
@@ -110,86 +118,81 @@ def command(
     renderer: str | None,
     light: Illuminant,
     plot_path: str | None,
+    style: str,
     force: bool,
     **rebuilding: Any,
 ) -> None:
-    _check_combination(files)
+    purpose = None
+    if kit is not None:
+        purpose = "--kit"
+        options.exclude(purpose, *REBUILDING, "renderer", "light", "plot_path", "style")
+    elif renderer is not None:
+        purpose = "--renderer"
+        options.exclude(purpose, *REBUILDING)
+    if purpose and len(files) > 1:
+        raise click.UsageError(f"{purpose} takes one cube.")
     enable_jit_cache()
     cube = files[0] if files else None
     if kit is not None:
         conformance.write(cube, kit, force=force)
     elif renderer is not None:
-        style = rebuilding["style"]
         conformance.judge(cube, renderer, light, style, plot_path, force=force)
     else:
-        _rebuild_all(files, **rebuilding)
+        given = options.given()
+        for name, needed in NEEDS.items():
+            if name in given:
+                raise click.UsageError(f"{given[name]} needs {needed}.")
+        if not files:
+            raise click.UsageError("Give cubes, --kit or --renderer.")
+        _rebuild_all(files, style, **rebuilding)
 
 
-def _check_combination(files: Sequence[str]) -> None:
-    """Raise a usage error for arguments that do not go together."""
-    given = options.given()
-    purpose = next((name for name in APPLICABLE if name in given), "")
-    applicable = APPLICABLE.get(purpose, REBUILDING)
-    for name, option in given.items():
-        if name not in (purpose, *applicable):
-            apart = f"does not go with --{purpose}" if purpose else NEEDS[name]
-            raise click.UsageError(f"{option} {apart}.")
-    if purpose and len(files) > 1:
-        raise click.UsageError(f"--{purpose} takes one cube.")
-    if not purpose and not files:
-        raise click.UsageError("Give cubes, --kit or --renderer.")
+@dataclass(frozen=True)
+class _Check:
+    """The record of a check, the rebuilt cube if there is one, and the error that
+    prevented the comparison.
+    """
+
+    record: dict[str, Any]
+    rebuilt: Cube | None
+    error: UpliftError | None
+
+    def settle(self, *, update: bool, is_shown: bool) -> int:
+        """Replace a failed cube or show its error, and return the exit code."""
+        is_failed = not self.record["passed"]
+        if is_failed and update and self.rebuilt:
+            self.rebuilt.save(self.record["cube"], force=True)
+            say(f"{self.record['cube']}: replaced", err=True)
+            is_failed = False
+        elif self.error and is_shown:
+            CommandFailure(self.error).show()
+        if self.error:
+            return BAD_INPUT
+        return FAILED_CHECK if is_failed else 0
 
 
 def _rebuild_all(
     files: Sequence[str],
+    style: str,
     folders: Sequence[str],
     update: bool,
-    style: str,
     quiet: bool,
 ) -> None:
     with progress_bar(quiet=quiet) as progress:
-        results = [
-            _check(Path(file), folders, progress) for file in dict.fromkeys(files)
-        ]
-    records = [record for record, _, _ in results]
-    if style == "json":
-        print_json(records)
-    elif not quiet:
-        _print_table(records)
-    code = 0
-    for result in results:
-        code = max(code, _settle(*result, update=update, is_shown=style != "json"))
-    if code:
-        raise SystemExit(code)
+        checks = [_check(file, folders, progress) for file in dict.fromkeys(files)]
+    records = [check.record for check in checks]
+    if style == "json" or not quiet:
+        print_result(style, records, _table(records))
+    if style != "json" and not quiet:
+        for record in records:
+            _print_changes(record)
+    codes = [check.settle(update=update, is_shown=style != "json") for check in checks]
+    if any(codes):
+        raise SystemExit(max(codes))
 
 
-def _settle(
-    record: dict[str, Any],
-    rebuilt: Cube | None,
-    error: UpliftError | None,
-    *,
-    update: bool,
-    is_shown: bool,
-) -> int:
-    """Replace a failed cube or show its error, and return the exit code."""
-    is_failed = not record["passed"]
-    if is_failed and update and rebuilt:
-        rebuilt.save(record["cube"], force=True)
-        say(f"{record['cube']}: replaced", err=True)
-        is_failed = False
-    elif error and is_shown:
-        CommandFailure(error).show()
-    if error:
-        return BAD_INPUT
-    return FAILED_CHECK if is_failed else 0
-
-
-def _check(
-    path: Path, folders: Sequence[str], progress: ProgressCallback
-) -> tuple[dict[str, Any], Cube | None, UpliftError | None]:
-    """Return the record of a check, the rebuilt cube if there is one, and the error
-    that prevented the comparison.
-    """
+def _check(file: str, folders: Sequence[str], progress: ProgressCallback) -> _Check:
+    """Rebuild a cube and compare the two."""
     from uplift.extras.report.rebuild import rebuild
     from uplift.extras.report.regression import compare_rebuilt
     from uplift.lookup.cube import load
@@ -199,33 +202,31 @@ def _check(
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always", UpliftWarning)
         try:
-            stored = load(path)
-            rebuilt = rebuild(stored, path, folders, progress=progress)
+            stored = load(file)
+            rebuilt = rebuild(stored, file, folders, progress=progress)
             messages = [warning.message for warning in caught]
             notes = [note for note in messages if isinstance(note, UpliftWarning)]
-            comparison = compare_rebuilt(path, stored.data, rebuilt.data)
+            comparison = compare_rebuilt(Path(file), stored.data, rebuilt.data)
         except UpliftError as cause:
             error = cause
     failures = list(comparison.failures) if comparison else []
-    problems = defaultdict(list)
-    for note in notes:
-        problems[note.code == "atlas-changed"].append(note.problem)
-    changed = problems[True]
+    changed = [note.problem for note in notes if note.code == "atlas-changed"]
+    others = [note.problem for note in notes if note.code != "atlas-changed"]
     if comparison and not failures:
-        problems[False] += [f"{text}: same spectra, other bytes" for text in changed]
+        others += [f"{text}: same spectra, other bytes" for text in changed]
         changed = []
     if error:
         failures.append(error.code)
     elif changed:
         failures.append("atlas-changed")
     record = {
-        "cube": str(path),
+        "cube": str(Path(file)),
         "passed": not failures,
         "failures": failures,
         "measures": {},
         "status": {},
         "atlas_changed": changed,
-        "notes": problems[False],
+        "notes": others,
         "entries": [],
         "error": error_object(error) if error else None,
     }
@@ -236,52 +237,46 @@ def _check(
             "rebuilt": comparison.rebuilt_counts,
         }
         record["entries"] = list(map(asdict, comparison.entries))
-    return record, rebuilt, error
+    return _Check(record, rebuilt, error)
 
 
-def _short(value: float) -> str:
-    """Format a number with one digit and a short exponent."""
-    return f"{value:.0e}".replace("e-0", "e-") if value else "0"
-
-
-def _print_table(records: Sequence[dict[str, Any]]) -> None:
+def _table(records: Sequence[dict[str, Any]]) -> Table:
+    """The verdicts and every comparison, red where it failed."""
     from uplift.extras.report.regression import LIMITS
 
-    headings = {
-        "rgb": "RGB",
-        "spectra_max": "spectra",
-        "spectra_rms": "rms",
-        "delta_e_D65": "ΔE D65",
-    }
-    measures = [headings.get(name, name.removeprefix("delta_e_")) for name in LIMITS]
-    table = make_table(("cube", "result", "atlas", "nodes"), measures)
+    rows = []
     for record in records:
-        table.add_row(record["cube"], *_cells(record, LIMITS))
-    limits = map(_short, LIMITS.values())
-    table.add_row("limit", "", "same", "same", *limits, style="dim")
-    show(table)
-    for record in records:
-        for problem in (*record["atlas_changed"], *record["notes"]):
-            paragraph(f"{record['cube']}: {problem}")
-        for entry in record["entries"]:
-            by = "" if entry["delta_e"] is None else f", ΔE00 {entry['delta_e']:.2g}"
-            say(f"  {entry['name']}: {entry['change']}{by}")
+        failures = record["failures"]
+        row = dict.fromkeys(HEADINGS) | {"cube": record["cube"]} | record["measures"]
+        row["result"] = "passed" if record["passed"] else "FAILED"
+        if record["measures"]:
+            row["atlas"] = "changed" if "atlas-changed" in failures else "same"
+            row["nodes"] = "differs" if "status" in failures else "same"
+        rows.append(row)
+    same = {"cube": "limit", "result": "", "atlas": "same", "nodes": "same"}
+    formats: dict[str, Format] = dict.fromkeys(("result", "atlas", "nodes"), _coloured)
+    formats |= {name: partial(_graded, limit) for name, limit in LIMITS.items()}
+    return Table([*rows, same | LIMITS], HEADINGS, formats=formats)
 
 
-def _cells(record: dict[str, Any], measures: Iterable[str]) -> Iterator[Text]:
-    """Yield the verdict, and every comparison, red where it failed."""
+def _graded(limit: float, value: float) -> Text:
+    """Format a number with one digit and a short exponent."""
     from rich.text import Text
 
-    if record["passed"]:
-        yield Text("passed", style="green")
-    else:
-        yield Text("FAILED", style="bold red")
-    texts = dict.fromkeys(("atlas-changed", "status", *measures), "–")
-    failed = dict.fromkeys(record["failures"], "bold red")
-    if record["measures"]:
-        texts["atlas-changed"] = "changed" if "atlas-changed" in failed else "same"
-        texts["status"] = "differs" if "status" in failed else "same"
-        for name in measures:
-            texts[name] = _short(record["measures"][name])
-    for name, text in texts.items():
-        yield Text(text, style=failed.get(name, ""))
+    text = f"{value:.0e}".replace("e-0", "e-") if value else "0"
+    return Text(text, style="" if value <= limit else "bold red")
+
+
+def _coloured(verdict: str) -> Text:
+    from rich.text import Text
+
+    style = "bold red" if verdict in ("FAILED", "changed", "differs") else ""
+    return Text(verdict, style="green" if verdict == "passed" else style)
+
+
+def _print_changes(record: dict[str, Any]) -> None:
+    for problem in (*record["atlas_changed"], *record["notes"]):
+        paragraph(f"{record['cube']}: {problem}")
+    for entry in record["entries"]:
+        by = "" if entry["delta_e"] is None else f", ΔE00 {entry['delta_e']:.2g}"
+        say(f"  {entry['name']}: {entry['change']}{by}")

@@ -12,8 +12,9 @@ from uplift.extras.images.sequences import expand_patterns
 
 from .. import options
 from ..inputs import read_pictures
-from ..output.console import make_table, paragraph, print_json, say, show
+from ..output.console import paragraph, say
 from ..output.progress import progress_bar
+from ..output.table import Table, print_result
 from ..outputs import check_outputs
 
 
@@ -89,40 +90,33 @@ def command(
 
             write_text(render_diff(difference, pictures, worst), output, force=force)
     figures = to_json(difference, tolerance, worst)
-    if style == "json":
-        print_json(figures)
-    else:
-        _print(figures)
-        if output is not None:
-            say(f"{output}: where they differ")
-    if tolerance is not None and not difference.is_within(tolerance):
+    _print(figures, style)
+    if output is not None and style != "json":
+        say(f"{output}: where they differ")
+    if not figures.get("passed", True):
         raise SystemExit(1)
 
 
-def _print(figures: dict[str, Any]) -> None:
-    moved = ("moved",) if "tolerance" in figures else ()
-    table = make_table(("colours", "light"), ("mean ΔE00", "95 %", "largest", *moved))
-    for row in figures["differences"]:
-        numbers = map("{:.3f}".format, (row["mean"], row["p95"], row["max"]))
-        counts = (f"{row[name]:,}" for name in moved)
-        table.add_row(row["set"], row["light"], *numbers, *counts)
-    worst = make_table(("worst colours", "linear RGB", "light"), ("ΔE00",))
-    for row in figures["worst"]:
-        name = row.get("entry", row["set"])
-        rgb = " ".join(map("{:.4f}".format, row["rgb"]))
-        worst.add_row(name, rgb, row["light"], f"{row['delta_e']:.3f}")
-    show(table, *([worst] if figures["worst"] else []))
+def _print(figures: dict[str, Any], style: str) -> None:
+    headings = {"set": "colours", "light": "light"}
+    headings |= {"mean": "mean ΔE00", "p95": "95 %", "max": "largest"}
+    if "tolerance" in figures:
+        headings["moved"] = "moved"
+    tables = [Table(figures["differences"], headings)]
+    if figures["worst"]:
+        rows = [{"entry": row["set"], **row} for row in figures["worst"]]
+        headings = {"entry": "worst colours", "rgb": "linear RGB"}
+        headings |= {"light": "light", "delta_e": "ΔE00"}
+        tables.append(Table(rows, headings, formats={"rgb": ".4f"}))
+    print_result(style, figures, *tables)
+    if style == "json":
+        return
     for change in ("removed", "added"):
         if names := figures[f"entries_{change}"]:
             paragraph(f"entries {change}: {', '.join(names)}")
     for row in figures["lacking"]:
-        say(
-            f"{row['set']}: {row['cubes']} cannot answer "
-            f"{pluralise(row['colours'], 'colour')}"
-        )
+        count = pluralise(row["colours"], "colour")
+        say(f"{row['set']}: {row['cubes']} cannot answer {count}")
     if "tolerance" in figures:
-        say(
-            "passed"
-            if figures["passed"]
-            else f"FAILED: the tolerance is ΔE00 {figures['tolerance']:g}"
-        )
+        failed = f"FAILED: the tolerance is ΔE00 {figures['tolerance']:g}"
+        say("passed" if figures["passed"] else failed)

@@ -192,7 +192,7 @@ def write_export(
     path = check_output(files[0], inputs=inputs, force=force)
     # Second files that exist are judged by their content.
     check_outputs(files, inputs=inputs, force=True)
-    content = import_part(source.reader)(name) if source.reader else None
+    content: Any = import_part(source.reader)(name) if source.reader else None
     if settings.pop("fill_missing", None):
         content = content.fill_missing()
     if names := settings.pop("paint", None):

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from itertools import chain
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -146,9 +145,9 @@ def command(
         from uplift.extras.pages.plots import plot_spectra
 
         blocks = list(blocks)
-        results = list(chain.from_iterable(blocks))
-        plot_spectra(answers.cube, results, plot_path, force=force)
-        say(f"{plot_path}: {pluralise(len(results), 'colour')}", err=True)
+        plot_spectra(answers.cube, blocks, plot_path, force=force)
+        count = sum(map(len, blocks))
+        say(f"{plot_path}: {pluralise(count, 'colour')}", err=True)
     print_answers(answers, blocks, style, details=details)
     if style == "table" and colours["cube_path"] is None:
         _suggest_cube()

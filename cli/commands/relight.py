@@ -17,10 +17,11 @@ from uplift.extras.images.sequences import expand_patterns
 
 from .. import options
 from ..inputs import read_pictures
-from ..output.console import make_table, paragraph, print_json, show
+from ..output.console import paragraph, print_json
 from ..output.diagnostics import warn
 from ..output.notes import collect_notes, print_notes
 from ..output.progress import progress_bar
+from ..output.table import Table, print_result
 from ..outputs import check_outputs
 from ..startup import enable_jit_cache
 
@@ -37,6 +38,14 @@ SPECTRAL = "spectral"
 """Method of the packaged cube, which knows no atlas."""
 DIM = 32
 """Lattice of the cubes that are built for --atlas."""
+HEADINGS = {
+    "image": "image",
+    "light": "light",
+    "spectra": "spectra",
+    "mean": "mean ΔE00",
+    "p95": "95 %",
+    "max": "largest",
+}
 
 
 def _check_output(path: str) -> str:
@@ -244,28 +253,23 @@ def _print_differences(relit: Sequence[Relit], output: str, style: str) -> None:
     """Print ΔE00 of every method from the products of RGB."""
     from uplift.extras.relight.relight import RGB_PRODUCT
 
-    rows = []
-    for image in relit:
-        for rendering in image.renderings:
-            for spectra in image.methods[1:]:
-                row = {
-                    "image": image.name,
-                    "light": rendering.light,
-                    "spectra": spectra,
-                    **rendering.errors((RGB_PRODUCT, spectra)),
-                }
-                rows.append(row)
-    if style == "json":
-        print_json({"output": output, "differences": rows})
-        return
-    table = make_table(("image", "light", "spectra"), ("mean ΔE00", "95 %", "largest"))
-    for row in rows:
-        *texts, mean, p95, largest = row.values()
-        table.add_row(*texts, *map("{:.2f}".format, (mean, p95, largest)))
-    show(table)
-    names = ", ".join(image.name for image in relit)
-    lights = ", ".join(rendering.light for rendering in relit[0].renderings)
-    paragraph(f"{output}: {names} under {lights}")
+    rows = [
+        {
+            "image": image.name,
+            "light": rendering.light,
+            "spectra": spectra,
+            **rendering.errors((RGB_PRODUCT, spectra)),
+        }
+        for image in relit
+        for rendering in image.renderings
+        for spectra in image.methods[1:]
+    ]
+    table = Table(rows, HEADINGS, digits=".2f")
+    print_result(style, {"output": output, "differences": rows}, table)
+    if style != "json":
+        names = ", ".join(image.name for image in relit)
+        lights = ", ".join(rendering.light for rendering in relit[0].renderings)
+        paragraph(f"{output}: {names} under {lights}")
 
 
 def _cube_of_user(

@@ -69,7 +69,7 @@ def command(
     from uplift.common.files import write_text
     from uplift.extras.colour.light_sets import REPORT_LIGHTS
     from uplift.extras.report.assessment import assess
-    from uplift.extras.report.page import render_report, to_json
+    from uplift.extras.report.page import render_report
     from uplift.extras.report.rebuild import recorded_atlas, recorded_files
     from uplift.lookup.cube import find_file, load
 
@@ -87,7 +87,7 @@ def command(
             loaded, Path(cube).name, size, atlas, lights or REPORT_LIGHTS
         )
         text = (
-            json_text(to_json(assessment)) + "\n"
+            json_text(assessment.values) + "\n"
             if style == "json"
             else render_report(assessment, worst)
         )
@@ -101,24 +101,22 @@ def command(
 def _summary(assessment: Assessment) -> str:
     from uplift.common.text import pluralise
 
-    parts = [
-        f"{pluralise(assessment.failures['over_threshold'], 'node')} over the threshold"
-    ]
+    values = assessment.values
+    over = values["failures"]["over_threshold"]
+    parts = [f"{pluralise(over, 'node')} over the threshold"]
     if assessment.entries is not None:
-        names = assessment.entries.names
         answers = assessment.entries.answers
-        parts.append(pluralise(len(names), "entry"))
+        parts.append(pluralise(len(values["entries"]), "entry"))
         parts.append(
             f"ΔE00 mean {answers.delta_e.mean():.2f}, worst {answers.worst[0]:.2f} "
-            f"('{names[0]}')"
+            f"('{values['entries'][0]['name']}')"
         )
-    if assessment.calibration is not None:
-        calibration = assessment.calibration
-        light = assessment.data.error_illuminant
+    errors = values["standard_error"]
+    if calibration := errors["calibration"]:
         parts.append(
-            f"68 % within {calibration.actual:.2f} under {light}, predicted "
-            f"{calibration.predicted:.2f}"
+            f"68 % within {calibration['real']:.2f} under {errors['light']}, predicted "
+            f"{calibration['stated']:.2f}"
         )
-    if assessment.crowding is not None:
-        parts.append(pluralise(len(assessment.crowding.entries.names), "crowded entry"))
+    if crowding := values["crowding"]:
+        parts.append(pluralise(len(crowding["entries"]), "crowded entry"))
     return ", ".join(parts)

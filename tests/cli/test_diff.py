@@ -13,14 +13,14 @@ def cubes(home, small_cube, plain_cube):
 
 
 def test_exit_code_by_tolerance(run, cubes):
-    run("diff", *cubes)
-    run("diff", *cubes, "--tolerance", "100", code=1)  # entries were removed
-    run("diff a.uplift a.uplift --tolerance 0")
+    run("lab diff", *cubes)
+    run("lab diff", *cubes, "--tolerance", "100", code=1)  # entries were removed
+    run("lab diff a.uplift a.uplift --tolerance 0")
 
 
 def test_json_and_page(run, cubes, home):
     result = run(
-        "diff",
+        "lab diff",
         *cubes,
         "--light",
         "A",
@@ -49,5 +49,5 @@ def test_json_and_page(run, cubes, home):
     ],
 )
 def test_bad_input(run, cubes, options, code):
-    result = run("diff", *cubes, *options, "--format", "json", code=2)
+    result = run("lab diff", *cubes, *options, "--format", "json", code=2)
     assert json.loads(result.stderr)["error"]["code"] == code

@@ -33,7 +33,7 @@ from uplift.cube.data import CubeData
 from uplift.cube.file import read, summarise
 from uplift.cube.schema import POINTS
 from uplift.extras.colour.colour_source import ColourSource
-from uplift.extras.colour.query import query
+from uplift.extras.colour.query import query_blocks
 from uplift.extras.images.converter import ImageConverter, RowConverter
 from uplift.extras.images.counts import Counts
 from uplift.extras.images.reader import SurfaceReader
@@ -321,7 +321,9 @@ def use_cube(path: Path) -> None:
         errors = cube.standard_error(RGB, light)
         if errors is not None and not np.isfinite(errors).all():
             raise ValueError("standard errors that are not finite")
-    if not all(np.isfinite(result.round_trip).all() for result in query(cube, RGB)):
+    if not all(
+        np.isfinite(block.round_trip).all() for block in query_blocks(cube, RGB)
+    ):
         raise ValueError("round trips that are not finite")
     json.dumps(summarise(cube.data), allow_nan=False)
     recorded_atlas(cube.data, path)

@@ -6,12 +6,11 @@ from numpy.testing import assert_allclose
 
 import uplift
 from tests.cube.cube_files import forge
-from tests.helpers import raises
+from tests.helpers import query, query_xyz, raises
 from uplift.colorimetry import observer
 from uplift.colorimetry.camera import CAMERA
 from uplift.common.errors import ColourError, CubeFileError
 from uplift.cube.file import digest
-from uplift.extras.colour.query import query, query_xyz
 from uplift.extras.export.coeff import write_coeff
 from uplift.extras.report.rebuild import rebuild
 

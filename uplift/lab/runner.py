@@ -98,9 +98,7 @@ class Errors:
         """Compare the errors under a light, by its number, with the stated ones."""
         if self.stated is None:
             return {}
-        stated = self.stated[:, number].T
-        calibration = check_calibration(self.delta_e[:, number], *stated)
-        return {} if calibration is None else calibration.to_json()
+        return check_calibration(self.delta_e[:, number], self.stated[:, number])
 
     def rows(self, lights: Iterable[str], **labels: Any) -> Iterator[Row]:
         """Yield a row of the ΔE00 under each light, of all lights, and of the rms."""

@@ -86,7 +86,7 @@ class Sampler:
         """Pickle arrays of numpy: JAX would restore those of float64 as float32."""
         return _on_device, (
             self.sensor,
-            Grid(*map(np.asarray, self.grid)),
+            jax.tree.map(np.asarray, self.grid),
             self.threads,
             self.exact,
         )

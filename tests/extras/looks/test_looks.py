@@ -8,11 +8,10 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 import uplift
 from tests.conftest import MACBETH
-from tests.helpers import quiet_build, raises, warns
+from tests.helpers import query, quiet_build, raises, warns
 from uplift import Look, LookError, read_looks
 from uplift.colorimetry.delta_e import delta_e_rgb
 from uplift.colorimetry.observer import display_sensors, light
-from uplift.extras.colour.query import query
 from uplift.extras.report.rebuild import rebuild
 from uplift.lookup.errors_under_lights import light_errors
 

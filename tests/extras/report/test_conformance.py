@@ -207,7 +207,7 @@ def test_the_worst_patch_is_named(cube, tmp_path, spectra):
     changed[314] *= 0.9
     found = check_renderer(write_table(tmp_path / "a.csv", changed), cube)
     assert not found.passed
-    assert found.worst(1) == [314]
+    assert found.to_json(1)["worst"][0]["patch"] == 314
 
 
 @pytest.mark.parametrize(

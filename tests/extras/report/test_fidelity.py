@@ -13,12 +13,12 @@ from tests.helpers import with_points, without_evidence
 from uplift.atlas.resampling import on_grid
 from uplift.colorimetry.observer import light
 from uplift.extras.report.assessment import assess
-from uplift.extras.report.crowding import find_crowding
 from uplift.extras.report.entries import (
     JAKOB_HANIKA,
     WITHOUT_ATLAS,
     entry_errors,
     find_alternatives,
+    find_crowding,
     own_entries,
 )
 from uplift.extras.report.measures import (
@@ -105,23 +105,20 @@ def test_lattice_errors_are_those_of_the_lattice_without_the_entries(
 def test_entries_of_another_atlas_have_no_lattice_errors(small_cube, repository):
     other = uplift.read_atlas(repository / "atlases" / "babelcolor.txt")
     found = assess(small_cube, "small.uplift", 1, other, ("D65", "A"))
-    assert not found.own
-    assert found.sources == ("babelcolor.txt",)
+    atlas = found.values["atlas"]
+    assert (atlas["own"], atlas["files"]) == (False, ["babelcolor.txt"])
     own = ("lattice", "half_width", "half_width_codes")
     assert {getattr(found.entries, name) for name in own} == {None}
-    assert sorted((*found.entries.names, *found.out_of_gamut)) == sorted(other.names)
+    assert sorted((*found.entries.names, *atlas["outside"])) == sorted(other.names)
 
 
 def test_without_an_atlas_there_are_no_entries(small_sigmoid_cube):
     found = assess(small_sigmoid_cube, "sigmoid.uplift", 1, None, ("A",))
-    assert (found.entries, found.delta_e, found.crowding, found.sources) == (
-        None,
-        {},
-        None,
-        (),
-    )
-    assert found.standard_error.counts.sum() == 512
-    assert found.calibration is None
+    values = found.values
+    assert found.entries is None
+    assert values["atlas"]["files"] == values["entries"] == []
+    assert values["crowding"] is values["standard_error"]["calibration"] is None
+    assert sum(values["standard_error"]["delta_e_2000"]["counts"]) == 512
 
 
 def test_smoothness_matches_explicit_loops(small_cube, small_sigmoid_cube):
@@ -167,7 +164,7 @@ def test_crowding_matches_brute_force(crowded_cube):
     assert found.entries.lattice.worst.tolist() == sorted(
         found.entries.lattice.worst, reverse=True
     )
-    assert found.lost == ()
+    assert found.lost == []
 
 
 def test_calibration_against_an_unknown_atlas(small_cube, repository):
@@ -190,52 +187,40 @@ def test_calibration_against_an_unknown_atlas(small_cube, repository):
         bounded += actual <= small_cube.error_bound(rgb)
     count = len(ratios)
     mean = sum(errors) / count
-    expected = (mean * np.quantile(ratios, 0.68), mean, within / count, bounded / count)
-    measured = found.calibration
-    found_numbers = (
-        measured.actual,
-        measured.predicted,
-        measured.within_error,
-        measured.within_bound,
-    )
-    assert found_numbers == pytest.approx(expected, abs=1e-6)
-    assert measured.count == count == len(found.entries.names)
-    assert (
-        measured.actual > measured.predicted
-    )  # these materials are unlike the ColorChecker
-    assert list(found.light_calibrations) == ["FL11"]
+    expected = {
+        "count": count,
+        "real": mean * np.quantile(ratios, 0.68),
+        "stated": mean,
+        "within_error": within / count,
+        "within_bound": bounded / count,
+    }
+    values = found.values["standard_error"]
+    assert values["calibration"] == pytest.approx(expected, abs=1e-6)
+    assert count == len(found.entries.names)
+    # These materials are unlike the ColorChecker.
+    assert values["calibration"]["real"] > values["calibration"]["stated"]
     rgb = found.entries.rgb
-    predicted = (
-        small_cube.standard_error(rgb, "FL11"),
-        small_cube.error_bound(rgb, "FL11"),
-    )
-    assert found.light_calibrations["FL11"] == check_calibration(
-        found.entries.answers.delta_e[:, 1], *predicted
-    )
-    assert found.unlike == small_cube.unlike_atlas(found.entries.rgb).mean()
+    stated = [small_cube.standard_error(rgb, "FL11")]
+    stated.append(small_cube.error_bound(rgb, "FL11"))
+    errors = found.entries.answers.delta_e[:, 1]
+    under = check_calibration(errors, np.transpose(stated))
+    assert values["calibrations"] == {"FL11": under}
+    assert values["unlike_atlas"] == small_cube.unlike_atlas(rgb).mean()
 
 
 def test_own_entries_give_no_calibration(judged, plain_cube, macbeth):
-    assert (judged.calibration, judged.light_calibrations, judged.unlike) == (
-        None,
-        {},
-        0,
-    )
-    assert judged.standard_error.counts.sum() == 512
+    values = judged.values["standard_error"]
+    assert (values["calibration"], values["calibrations"]) == (None, {})
+    assert values["unlike_atlas"] == 0
+    assert sum(values["delta_e_2000"]["counts"]) == 512
     # Stored errors are not limited by possible ones.
-    mean = judged.standard_error.mean
-    assert 0.9 < mean / judged.facts["mean_standard_error"] < 1
+    mean = values["delta_e_2000"]["mean"]
+    assert 0.9 < mean / judged.values["build"]["mean_standard_error"] < 1
     earlier = without_evidence(plain_cube)
-    unknowing = assess(earlier, "plain.uplift", 1, macbeth, ("A",))
-    assert (unknowing.standard_error, unknowing.facts["mean_standard_error"]) == (
-        None,
-        None,
-    )
-    assert (
-        check_calibration(unknowing.entries.actual, unknowing.entries.predicted, None)
-        is None
-    )
-    assert unknowing.calibration is None
+    unknowing = assess(earlier, "plain.uplift", 1, macbeth, ("A",)).values
+    assert unknowing["build"]["mean_standard_error"] is None
+    errors = unknowing["standard_error"]
+    assert errors["delta_e_2000"] is errors["calibration"] is None
 
 
 def test_failures_list_the_worst_points_first(spoilt, small_cube):
@@ -287,13 +272,10 @@ def test_the_atlas_helps(judged):
 
 
 def test_colours_outside_srgb_have_no_answer(judged):
-    inside = judged.entries.take(
-        np.flatnonzero(np.array(judged.entries.names) != OUTSIDE)
-    )
-    target = inside.answers.expected.copy()
+    inside = judged.entries.take(judged.entries.names != OUTSIDE)
+    target = inside.target.copy()
     target[0] = np.where(judged.data.sensor.wavelengths > 600, 1.0, 0.0)
-    answers = dataclasses.replace(inside.answers, expected=target)
-    errors = dataclasses.replace(inside, answers=answers)
+    errors = dataclasses.replace(inside, target=target)
     other = find_alternatives(judged.data, errors, [light("A")])[WITHOUT_ATLAS]
     assert np.isnan(other.delta_e[0]).all()
     assert np.isnan(other.answers[0]).all()

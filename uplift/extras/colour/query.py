@@ -30,30 +30,56 @@ NAMED_ROWS = 256
 
 @dataclass(frozen=True, eq=False, repr=False)
 class QueryBlock:
-    """The answers to n colours by columns, which `QueryResult` describes."""
+    """The answers to n colours, by columns."""
 
     rgb: Array
+    """(n, 3) linear RGB, in [0, 1] unless the query was by XYZ."""
     requested_rgb: Array
+    """(n, 3) linear RGB before gamut mapping."""
     wavelengths: Array
+    """(N,) nm."""
     reflectance: Array
+    """(n, N) in [0, 1]."""
     round_trip: Array
+    """(n, 3) linear RGB of the reflectance."""
     xyz: Array
+    """(n, 3) XYZ of the reflectance under the illuminant of the cube, where white has Y
+    = 1.
+    """
     delta_e_2000: Array
+    """(n,) ΔE00 between ``rgb`` and ``round_trip``; for raw values of a camera, by an
+    approximate matrix.
+    """
     cell: Indices
+    """(n, 3) position of the lowest corner of the cell along the axes."""
     corner_statuses: NDArray[np.uint8]
-    """(n, 8)."""
+    """(n, 8) statuses of the corners of the cell."""
     entry: list[str | None]
+    """(n,) atlas entry whose 8-bit codes are those of the colour, within
+    `CODE_TOLERANCE`.
+    """
     errors: Array
-    """(n, 2) standard errors and error bounds, NaN where they are unknown."""
+    """(n, 2) ΔE00 from the answer that 68 % and 95 % of measurements stay within; NaN
+    where they are unknown.
+    """
     light_errors: Mapping[str, Array]
     """The same by light."""
     light_xyz: Mapping[str, Array]
+    """XYZ (n, 3) of the reflectance by light; the perfect reflector has that of
+    `Light.white`.
+    """
     unlike_atlas: Mask
+    """(n,) whether no atlas entry has a colour near this one, not whether the material
+    is of another kind; see `Cube.unlike_atlas`. False without standard errors.
+    """
     solid: Solid
     """Solid of the realisable colours."""
 
     @cached_property
     def realisable(self) -> Mask:
+        """(n,) whether a reflectance with the colour exists. If not, the answer has
+        less chroma.
+        """
         # The solid is convex: with the corners of RGB it contains everything between.
         if (
             in_unit_cube(self.rgb).all()
@@ -64,6 +90,7 @@ class QueryBlock:
 
     @cached_property
     def statuses(self) -> list[tuple[Status, ...]]:
+        """(n,) different statuses of the corners of the cell."""
         keys = self.corner_statuses.view("u8")[:, 0].tolist()
         # np.unique without counts imports numpy.ma, which takes time.
         distinct = {
@@ -74,83 +101,6 @@ class QueryBlock:
 
     def __len__(self) -> int:
         return len(self.rgb)
-
-    def __iter__(self) -> Iterator["QueryResult"]:
-        cells = self.cell.tolist()
-        for row, entry in enumerate(self.entry):
-            yield QueryResult(
-                rgb=self.rgb[row],
-                requested_rgb=self.requested_rgb[row],
-                wavelengths=self.wavelengths,
-                reflectance=self.reflectance[row],
-                round_trip=self.round_trip[row],
-                xyz=self.xyz[row],
-                delta_e_2000=float(self.delta_e_2000[row]),
-                cell=tuple(cells[row]),
-                statuses=self.statuses[row],
-                entry=entry,
-                standard_error=_known(self.errors[row, 0]),
-                error_bound=_known(self.errors[row, 1]),
-                standard_errors=_known_at(self.light_errors, row, 0),
-                error_bounds=_known_at(self.light_errors, row, 1),
-                light_xyz={name: xyz[row] for name, xyz in self.light_xyz.items()},
-                unlike_atlas=bool(self.unlike_atlas[row]),
-                realisable=bool(self.realisable[row]),
-            )
-
-
-@dataclass(frozen=True, eq=False, repr=False)
-class QueryResult:
-    """The answer to one colour."""
-
-    rgb: Array
-    """(3,) linear RGB, in [0, 1] unless the query was by XYZ."""
-    requested_rgb: Array
-    """(3,) linear RGB before gamut mapping."""
-    wavelengths: Array
-    """(N,) nm."""
-    reflectance: Array
-    """(N,) in [0, 1]."""
-    round_trip: Array
-    """(3,) linear RGB of the reflectance."""
-    xyz: Array
-    """(3,) XYZ of the reflectance under the illuminant of the cube, where white has Y =
-    1.
-    """
-    delta_e_2000: float
-    """ΔE00 between ``rgb`` and ``round_trip``; for raw values of a camera, by an
-    approximate matrix.
-    """
-    cell: tuple[int, int, int]
-    """Position of the lowest corner of the cell along the axes."""
-    statuses: tuple[Status, ...]
-    """Statuses of the corners of the cell."""
-    entry: str | None
-    """Atlas entry whose 8-bit codes are those of the colour, within `CODE_TOLERANCE`.
-    """
-    standard_error: float | None
-    """ΔE00 from the answer that 68 % of measurements stay within; None if the cube has
-    no estimate.
-    """
-    error_bound: float | None
-    """The same for 95 %."""
-    standard_errors: Mapping[str, float]
-    """Standard errors under other lights, by their names; empty if the cube has no
-    estimate.
-    """
-    error_bounds: Mapping[str, float]
-    light_xyz: Mapping[str, Array]
-    """XYZ (3,) of the reflectance under these lights; the perfect reflector has that of
-    `Light.white`.
-    """
-    unlike_atlas: bool
-    """Whether no atlas entry has a colour near this one, not whether the material is of
-    another kind; see `Cube.unlike_atlas`. False
-    without standard errors.
-    """
-    realisable: bool
-    """Whether a reflectance with the colour exists. If not, the answer has less chroma.
-    """
 
 
 class Answering(Protocol):
@@ -163,22 +113,6 @@ class Answering(Protocol):
     def errors(self, rgb: Array, light: Light) -> Array:
         """Standard errors and error bounds (n, 2) under a light."""
         ...
-
-
-def query(
-    cube: Cube,
-    rgb: Array,
-    wavelengths: ArrayLike | None = None,
-    mode: str = "spectra",
-    requested_rgb: Array | None = None,
-    lights: Sequence[Light] = (),
-    outside: Mask | None = None,
-) -> Iterator[QueryResult]:
-    """Answer linear RGB (n, 3) in [0, 1] in full detail, as `query_blocks`."""
-    for block in query_blocks(
-        cube, rgb, wavelengths, mode, requested_rgb, lights, outside
-    ):
-        yield from block
 
 
 def query_blocks(
@@ -194,48 +128,23 @@ def query_blocks(
     """Answer linear RGB (n, 3) in [0, 1] in full detail, block by block.
 
     ``requested_rgb`` are the colours before gamut mapping, ``lights`` those of
-    `QueryResult.standard_errors`. Colours that are ``outside`` (n,) are answered as
-    requested, not as mapped. ``answering`` takes the place of the cube for the others.
-    Raises `UnknownNameError` for an unknown mode.
+    `QueryBlock.light_errors`. Colours that are ``outside`` (n,) by `locate_xyz`
+    are answered as requested, not as mapped: the spectra are computed from the nearest
+    colour that the cube holds, and from an atlas entry outside the space close to it;
+    only those of such entries have a standard error. ``answering`` takes the place of
+    the cube for the others. Raises `UnknownNameError` for an unknown mode, and
+    `ColourError` (``colour-unrealisable``) if no reflectance has a colour, or the model
+    does not reach it.
     """
     if mode not in MODES:
         raise unknown_name(mode, MODES, "mode")
     at = as_wavelengths(wavelengths, cube.data.sensor.wavelengths)
+    lookup = _Lookup(cube, at, mode, lights, answering)
     requested = rgb if requested_rgb is None else requested_rgb
     rgb = as_colours(rgb, cube.data.sensor)
     beyond = np.zeros(len(rgb), dtype=bool) if outside is None else outside
-    for start in range(0, len(rgb), BLOCK):
-        block = slice(start, start + BLOCK)
-        yield _block(
-            cube,
-            rgb[block],
-            requested[block],
-            beyond[block],
-            at,
-            mode,
-            lights,
-            answering,
-        )
-
-
-def query_xyz(
-    cube: Cube,
-    xyz: ArrayLike,
-    wavelengths: ArrayLike | None = None,
-    mode: str = "spectra",
-    lights: Sequence[Light] = (),
-) -> Iterator[QueryResult]:
-    """Answer colours by XYZ (n, 3) under the illuminant of the cube, also those outside
-    its RGB space.
-
-    The cube answers colours in its RGB space. The spectra of others are computed from
-    the nearest one that it holds, and from an atlas entry outside the space close to
-    it; only those of such entries have a standard error. Raises `ColourError`
-    (``colour-unrealisable``) if no reflectance has a colour, or the model does not
-    reach it.
-    """
-    rgb, requested, outside = locate_xyz(cube, xyz)
-    yield from query(cube, rgb, wavelengths, mode, requested, lights, outside)
+    for block in blocks(len(rgb), BLOCK):
+        yield lookup.answer(rgb[block], requested[block], beyond[block])
 
 
 def locate_xyz(cube: Cube, xyz: ArrayLike) -> tuple[Array, Array, Mask]:
@@ -256,70 +165,79 @@ def locate_xyz(cube: Cube, xyz: ArrayLike) -> tuple[Array, Array, Mask]:
     return mapped.rgb, requested, mapped.outside
 
 
-def _block(
-    cube: Cube,
-    rgb: Array,
-    requested: Array,
-    outside: Mask,
-    at: Array,
-    mode: str,
-    lights: Sequence[Light],
-    answering: Answering | None,
-) -> QueryBlock:
-    data = cube.data
-    sensor = data.sensor
-    count = len(sensor.wavelengths)
-    grid = np.concatenate([sensor.wavelengths, at])
-    answered = np.where(outside[:, None], requested, rgb)
-    if outside.any():
-        from uplift.extras.colour.outside import reflectance_anywhere
+@dataclass(frozen=True, eq=False)
+class _Lookup:
+    """A cube, and what is asked of it."""
 
-        spectra = reflectance_anywhere(data, answered, grid, mode, outside)
-    elif answering is not None:
-        spectra = answering.spectra(rgb, grid)
-    else:
-        spectra = MODES[mode](data, rgb, grid)
-    at_sensor = spectra[:, :count]
-    round_trip = sensor.rgb(at_sensor)
-    xyz = at_sensor @ sensor.light.xyz.T
-    light_xyz = {light.name: at_sensor @ light.xyz.T for light in lights}
-    delta_e = delta_e_rgb(sensor, answered, round_trip)
-    outside_entries = _outside_entries(data, answered)
-    names = _entry_names(cube, rgb, outside, outside_entries)
-    unlike = np.zeros(len(rgb), dtype=bool)
-    errors = np.full((len(rgb), 2), np.nan)
-    light_errors = {}
-    if data.points.standard_error is not None:
-        unlike = cube.unlike_atlas(rgb) & ~outside
-        errors = _errors(cube, rgb, outside, outside_entries)
-        light_errors = {
-            light.name: _errors(cube, rgb, outside, outside_entries, light)
-            for light in lights
-        }
-    if answering is not None:
-        from uplift.colorimetry.observer import light as find_light
+    cube: Cube
+    wavelengths: Array
+    mode: str
+    lights: Sequence[Light]
+    answering: Answering | None
 
-        reference = find_light(data.error_illuminant, sensor.observer, *sensor.range)
-        errors = answering.errors(rgb, reference)
-        light_errors = {light.name: answering.errors(rgb, light) for light in lights}
-    low, fraction = data.lattice.cell(rgb)
-    return QueryBlock(
-        rgb=answered,
-        requested_rgb=requested,
-        wavelengths=at,
-        reflectance=spectra[:, count:],
-        round_trip=round_trip,
-        xyz=xyz,
-        delta_e_2000=delta_e,
-        cell=low,
-        corner_statuses=data.points.status[data.lattice.cell_corners(low, fraction)[0]],
-        entry=names,
-        errors=errors,
-        light_errors=light_errors,
-        light_xyz=light_xyz,
-        unlike_atlas=unlike,
-        solid=data.solid,
-    )
+    def spectra(self, rgb: Array, grid: Array, outside: Mask) -> Array:
+        """Compute reflectances (n, N) at linear RGB (n, 3)."""
+        data = self.cube.data
+        if outside.any():
+            from uplift.extras.colour.outside import reflectance_anywhere
+
+            return reflectance_anywhere(data, rgb, grid, self.mode, outside)
+        if self.answering is not None:
+            return self.answering.spectra(rgb, grid)
+        return MODES[self.mode](data, rgb, grid)
+
+    def answer(self, rgb: Array, requested: Array, outside: Mask) -> QueryBlock:
+        """Answer colours (n, 3), of which those outside the RGB space are answered as
+        requested.
+        """
+        cube = self.cube
+        data = cube.data
+        sensor = data.sensor
+        count = len(sensor.wavelengths)
+        grid = np.concatenate([sensor.wavelengths, self.wavelengths])
+        answered = np.where(outside[:, None], requested, rgb)
+        spectra = self.spectra(answered, grid, outside)
+        at_sensor = spectra[:, :count]
+        round_trip = sensor.rgb(at_sensor)
+        outside_entries = _outside_entries(data, answered)
+        unlike = np.zeros(len(rgb), dtype=bool)
+        if data.points.standard_error is not None:
+            unlike = cube.unlike_atlas(rgb) & ~outside
+
+        def errors(light: Light | None) -> Array:
+            if self.answering is not None:
+                return self.answering.errors(rgb, light or _error_light(data))
+            return _errors(cube, rgb, outside, outside_entries, light)
+
+        is_stated = self.answering or data.points.standard_error is not None
+        low, fraction = data.lattice.cell(rgb)
+        corners, _ = data.lattice.cell_corners(low, fraction)
+        return QueryBlock(
+            rgb=answered,
+            requested_rgb=requested,
+            wavelengths=self.wavelengths,
+            reflectance=spectra[:, count:],
+            round_trip=round_trip,
+            xyz=at_sensor @ sensor.light.xyz.T,
+            delta_e_2000=delta_e_rgb(sensor, answered, round_trip),
+            cell=low,
+            corner_statuses=data.points.status[corners],
+            entry=_entry_names(cube, rgb, outside, outside_entries),
+            errors=errors(None) if is_stated else np.full((len(rgb), 2), np.nan),
+            light_errors={light.name: errors(light) for light in self.lights}
+            if is_stated
+            else {},
+            light_xyz={light.name: at_sensor @ light.xyz.T for light in self.lights},
+            unlike_atlas=unlike,
+            solid=data.solid,
+        )
+
+
+def _error_light(data: CubeData) -> Light:
+    """Return the light of the standard errors of a cube."""
+    from uplift.colorimetry.observer import light
+
+    return light(data.error_illuminant, data.sensor.observer, *data.sensor.range)
 
 
 def _outside_entries(data: CubeData, rgb: Array) -> dict[int, int]:
@@ -350,19 +268,6 @@ def _entry_names(
         for row, entry in outside_entries.items():
             names[row] = atlas.outside.names[entry]
     return names
-
-
-def _known(error: float) -> float | None:
-    return None if np.isnan(error) else float(error)
-
-
-def _known_at(errors: Mapping[str, Array], row: int, column: int) -> dict[str, float]:
-    """Return the errors of a row by light, without those that are unknown."""
-    return {
-        name: float(values[row, column])
-        for name, values in errors.items()
-        if not np.isnan(values[row, 0])
-    }
 
 
 def _errors(

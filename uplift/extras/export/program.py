@@ -20,7 +20,6 @@ from uplift.common.errors import (
     OptionError,
     OutputError,
     UpliftWarning,
-    unknown_name,
     warn,
 )
 from uplift.common.files import atomic_write, write_text
@@ -31,7 +30,6 @@ from uplift.cube.file import digest
 from uplift.extras.export.outputs import output_files
 from uplift.extras.export.program_table import (
     COLUMNS,
-    PROGRAM_MODES,
     Table,
     check_complete,
     make_table,
@@ -134,10 +132,6 @@ def write_program(
     with the same stem: float32 numbers, little-endian. A cube that was built for a
     scene is an `OptionError` of the code ``sparse-cube``.
     """
-    if style not in LANGUAGES:
-        raise unknown_name(style, LANGUAGES, "language")
-    if mode not in PROGRAM_MODES:
-        raise unknown_name(mode, PROGRAM_MODES, "mode")
     check_complete(data, "a program")
     path = Path(path)
     form = check_form(style, form)

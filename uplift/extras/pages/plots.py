@@ -2,7 +2,7 @@
 metamers in a* and b*.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from itertools import zip_longest
 from typing import Any
@@ -14,7 +14,7 @@ from uplift.colorimetry.gamut import SRGB, Gamut
 from uplift.colorimetry.observer import display_sensors
 from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Array, StrPath
-from uplift.extras.colour.query import QueryResult
+from uplift.extras.colour.query import QueryBlock
 from uplift.extras.colour.srgb import to_display_codes
 from uplift.extras.looks.lab_errors import LIKELY
 from uplift.extras.looks.metamer_bounds import Bounds
@@ -39,15 +39,17 @@ Curve = tuple[Array, Array, Array, str]
 
 
 def plot_spectra(
-    cube: Cube, results: Sequence[QueryResult], path: StrPath, *, force: bool = False
+    cube: Cube, blocks: Iterable[QueryBlock], path: StrPath, *, force: bool = False
 ) -> None:
     """Plot reflectances over wavelength as PNG, SVG or PDF, each in its own colour."""
     curves = []
-    for result in results:
-        code = cube.encode(result.rgb).round().astype(np.uint8)
-        label = result.entry or f"#{code.tobytes().hex()}"
-        colour = to_display_codes(result.rgb, cube.data.sensor)
-        curves.append((result.wavelengths, result.reflectance, colour, label))
+    for block in blocks:
+        codes = cube.encode(block.rgb).round().astype(np.uint8)
+        colours = to_display_codes(block.rgb, cube.data.sensor)
+        rows = zip(block.entry, codes, colours, block.reflectance, strict=True)
+        for entry, code, colour, reflectance in rows:
+            label = entry or f"#{code.tobytes().hex()}"
+            curves.append((block.wavelengths, reflectance, colour, label))
     _write_curves(curves, spectra_panel([]), path, force=force)
 
 

@@ -93,11 +93,9 @@ class SpectraComparison(Comparison):
         """(n,) largest absolute difference at any wavelength."""
         return np.abs(self.answers - self.expected).max(axis=1)
 
-    def take(self, rows: Indices) -> Self:
-        """Select rows (k,)."""
-        return type(self)(
-            self.lights, self.delta_e[rows], self.expected[rows], self.answers[rows]
-        )
+    def __getitem__(self, rows: Any) -> Self:
+        arrays = (self.delta_e[rows], self.expected[rows], self.answers[rows])
+        return type(self)(self.lights, *arrays)
 
 
 def compare_spectra(

@@ -5,16 +5,21 @@ compared with those of this package.
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from uplift.colorimetry.delta_e import delta_e_2000, lab
 from uplift.colorimetry.illuminants import Illuminant
 from uplift.colorimetry.observer import light
 from uplift.colorimetry.sensor import Light
 from uplift.common.arrays import Array, StrPath
 from uplift.cube.data import CubeData
 from uplift.extras.colour.light_sets import REGRESSION_LIGHTS
+from uplift.extras.report.comparison import (
+    Comparison,
+    compare_colours,
+    mean_p95_max,
+)
 from uplift.extras.report.conformance_chart import (
     COLUMNS,
     COUNT,
@@ -37,8 +42,7 @@ MODES = ("spectra", "refined", "moments")
 PICTURES = ".exr"
 
 
-@dataclass(frozen=True)
-class Differences:
+class Differences(NamedTuple):
     """Mean, 95 % quantile and largest ΔE00 of patches."""
 
     mean: float
@@ -47,11 +51,7 @@ class Differences:
 
     def within(self, limits: "Differences") -> bool:
         """Whether all are at most as large as limits."""
-        return (
-            self.mean <= limits.mean
-            and self.p95 <= limits.p95
-            and self.largest <= limits.largest
-        )
+        return all(figure <= limit for figure, limit in zip(self, limits, strict=True))
 
 
 PICTURE_LIMITS = Differences(0.2, 0.5, 1.0)
@@ -85,21 +85,25 @@ class Reference:
 
 @dataclass(frozen=True, eq=False)
 class Conformance:
-    """ΔE00 (1000,) of the patches, to the mode of lookup that is nearest: between the
-    XYZ (1000, 3) that were found and those expected.
+    """Patches compared with the mode of lookup that is nearest: the XYZ (1000, 3) that
+    were found and those expected.
 
     ``explanation`` names a mistake that gives these colours, and is empty if none is
     known.
     """
 
-    light: str
     mode: str
     chart: Chart
     found: Array
     expected: Array
-    delta_e: Array
+    comparison: Comparison
     limits: Differences
     explanation: str = ""
+
+    @property
+    def light(self) -> str:
+        """Light of the picture."""
+        return self.comparison.lights[0]
 
     @property
     def brightness(self) -> float:
@@ -109,25 +113,39 @@ class Conformance:
     @property
     def differences(self) -> Differences:
         """The figures that have limits."""
-        return summarise(self.delta_e)
+        return summarise(self.comparison)
 
     @property
     def passed(self) -> bool:
         """Whether all figures are within the limits."""
         return self.differences.within(self.limits)
 
-    def worst(self, count: int) -> list[int]:
-        """Return the numbers of the patches of the largest ΔE00."""
-        return [int(number) for number in np.argsort(-self.delta_e)[:count]]
+    def to_json(self, worst: int) -> dict[str, Any]:
+        """Return the figures, and the patches of the largest ΔE00."""
+        rows = []
+        for patch in self.comparison.worst_rows(worst).tolist():
+            colour = {
+                "patch": patch,
+                "name": self.chart.names[patch],
+                "rgb": self.chart.rgb[patch].tolist(),
+                "delta_e": float(self.comparison.worst[patch]),
+            }
+            rows.append(colour)
+        return {
+            "passed": self.passed,
+            "light": self.light,
+            "mode": self.mode,
+            "delta_e": self.differences._asdict(),
+            "limits": self.limits._asdict(),
+            "brightness": self.brightness,
+            "explanation": self.explanation,
+            "worst": rows,
+        }
 
 
-def summarise(delta_e: Array) -> Differences:
-    """Return the figures of ΔE00 (n,)."""
-    return Differences(
-        float(delta_e.mean()),
-        float(np.quantile(delta_e, 0.95)),
-        float(delta_e.max()),
-    )
+def summarise(comparison: Comparison) -> Differences:
+    """Return the figures of patches."""
+    return Differences(*mean_p95_max(comparison.delta_e).values())
 
 
 def check_renderer(
@@ -180,29 +198,21 @@ def picture_reference(cube: Cube, chart: Chart, illuminant: Illuminant) -> Refer
 
 def compare(xyz: Array, reference: Reference, limits: Differences) -> Conformance:
     """Compare XYZ (1000, 3) with all modes, and explain a failure."""
-    white = reference.light.white
-    colours = lab(xyz, white)
-    by_mode = {}
+
+    def conformance(mode: str) -> Conformance:
+        expected = reference.xyz(mode)
+        compared = compare_colours(expected, xyz, reference.light)
+        return Conformance(mode, reference.chart, xyz, expected, compared, limits)
+
+    nearest = min(map(conformance, MODES), key=lambda found: found.differences.mean)
+    if nearest.passed:
+        return nearest
     for mode in MODES:
-        expected = lab(reference.xyz(mode), white)
-        by_mode[mode] = delta_e_2000(colours, expected)
-    nearest = min(by_mode, key=lambda mode: float(by_mode[mode].mean()))
-    conformance = Conformance(
-        reference.light.name,
-        nearest,
-        reference.chart,
-        xyz,
-        reference.xyz(nearest),
-        by_mode[nearest],
-        limits,
-    )
-    if conformance.passed:
-        return conformance
-    for mode in MODES:
-        for explanation, mistaken in _mistakes(reference, mode, conformance.brightness):
-            if summarise(delta_e_2000(colours, lab(mistaken, white))).within(limits):
-                return replace(conformance, explanation=explanation)
-    return conformance
+        for explanation, mistaken in _mistakes(reference, mode, nearest.brightness):
+            compared = compare_colours(mistaken, xyz, reference.light)
+            if summarise(compared).within(limits):
+                return replace(nearest, explanation=explanation)
+    return nearest
 
 
 def _mistakes(

@@ -23,7 +23,7 @@ def plot_conformance(conformance: Conformance) -> Any:
     light = conformance.light
     expected = f"expected, {conformance.mode}, under {light}"
     differences = conformance.differences
-    errors = conformance.delta_e.reshape(ROWS, COLUMNS)
+    errors = conformance.comparison.delta_e.reshape(ROWS, COLUMNS)
     verdict = "passed" if conformance.passed else "FAILED"
     title = f"ΔE00, mean {differences.mean:.2g}: {verdict}"
     largest = max(differences.largest, MIN_SCALE)

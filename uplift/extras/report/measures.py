@@ -1,14 +1,12 @@
 """Failures of a build, smoothness, round trips, calibration of errors."""
 
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from uplift.colorimetry.delta_e import delta_e_rgb
 from uplift.colorimetry.likely_errors import COVERAGE
-from uplift.common.arrays import Array
+from uplift.common.arrays import Array, Values
 from uplift.cube.data import CubeData
 from uplift.lattice.point_table import Status
 from uplift.lookup.cube import Cube
@@ -51,7 +49,7 @@ def collect_failures(data: CubeData) -> dict[str, Any]:
     }
 
 
-def compute_smoothness(data: CubeData) -> tuple[NDArray[np.float32], Array]:
+def compute_smoothness(data: CubeData) -> tuple[Values, Array]:
     """rms differences (k,) over wavelength between neighbours, each pair once, and RGB
     (2, 3) of the largest's pair.
 
@@ -60,31 +58,30 @@ def compute_smoothness(data: CubeData) -> tuple[NDArray[np.float32], Array]:
     """
     dim = data.lattice.dim
     wavelengths = data.sensor.wavelengths
-    parts = []
-    # of a plane; NaN for absent nodes
-    none = spectra = np.full((dim, dim, len(wavelengths)), np.nan)
-    for first in range(0, dim**3, dim**2):
+    nodes = np.arange(dim**3).reshape(dim, dim, dim)
+    # Steps to each node from the one before it along blue, green and red; NaN where one
+    # of the two is absent
+    steps = np.full((dim, 3, dim, dim), np.nan)
+    before = np.full((dim, dim, len(wavelengths)), np.nan)
+    for red, plane in enumerate(nodes):
+        present = data.points.present[plane]
+        spectra = np.full_like(before, np.nan)
+        coefficients = data.points.coefficients[plane[present]]
+        spectra[present] = reflectance(data.model, coefficients, wavelengths)
+        steps[red, 0, :, 1:] = _rms(np.diff(spectra, axis=1))
+        steps[red, 1, 1:] = _rms(np.diff(spectra, axis=0))
+        steps[red, 2] = _rms(spectra - before)
         before = spectra
-        spectra = none
-        nodes = first + np.arange(dim**2).reshape(dim, dim)
-        present = data.points.present[nodes]
-        if not present.any():
-            continue
-        spectra = none.copy()
-        spectra[present] = reflectance(
-            data.model, data.points.coefficients[nodes[present]], wavelengths
-        )
-        for low, second, high, step in (
-            (spectra[:, :-1], spectra[:, 1:], nodes[:, 1:], 1),  # along blue
-            (spectra[:-1], spectra[1:], nodes[1:], dim),  # along green
-            (before, spectra, nodes, dim**2),  # along red
-        ):
-            rms = np.sqrt(((second - low) ** 2).mean(axis=-1))
-            known = ~np.isnan(rms)
-            parts.append((rms[known], high[known], high[known] - step))
-    rms, high, low = map(np.concatenate, zip(*parts, strict=True))
-    steepest = np.stack([low, high])[:, rms.argmax()]
-    return rms.astype(np.float32), data.lattice.target(steepest)
+    largest = np.unravel_index(np.nanargmax(steps), steps.shape)
+    red, along, green, blue = map(int, largest)
+    high = nodes[red, green, blue]
+    steepest = np.array([high - dim**along, high])
+    known = steps[~np.isnan(steps)]
+    return known.astype(np.float32), data.lattice.target(steepest)
+
+
+def _rms(differences: Array) -> Array:
+    return np.sqrt((differences**2).mean(axis=-1))
 
 
 COLOURS = 4096
@@ -120,59 +117,19 @@ def _random_rgb(data: CubeData) -> Array:
     )
 
 
-# largest factor, in both directions, between actual and predicted errors that counts as
-# agreement
-TOLERANCE = 1.25
+def check_calibration(actual: Array, stated: Array) -> dict[str, float]:
+    """Compare actual errors (n,) with standard errors and error bounds (n, 2).
 
-
-@dataclass(frozen=True)
-class Calibration:
-    """Actual errors of entries against predicted ones, ΔE00 under the cube's error
-    illuminant.
+    ``stated`` is the mean standard error, ``real`` the mean with which 68 % of the
+    errors would be within. The others are fractions of the errors.
     """
-
-    count: int  # Number of entries
-    # Mean that they should have had, so that 68 % of the entries were within
-    actual: float
-    predicted: float  # Mean of the standard errors
-    # Fraction of the entries whose error is at most its standard error
-    within_error: float
-    within_bound: float  # The same of its error bound
-
-    @property
-    def verdict(self) -> int:
-        """Return 0 if both agree, 1 if the actual errors are larger, −1 if they are
-        smaller.
-        """
-        if self.actual > TOLERANCE * self.predicted:
-            return 1
-        return -1 if self.predicted > TOLERANCE * self.actual else 0
-
-    def to_json(self) -> dict[str, float]:
-        """Return the numbers by their names in JSON output."""
-        return {
-            "count": self.count,
-            "real": self.actual,
-            "stated": self.predicted,
-            "within_error": self.within_error,
-            "within_bound": self.within_bound,
-        }
-
-
-def check_calibration(
-    actual: Array, predicted: Array | None, bound: Array | None
-) -> Calibration | None:
-    """Compare actual errors (n,) with standard errors and error bounds (n,); None if
-    the cube has none.
-    """
-    if predicted is None or bound is None:
-        return None
+    predicted, bound = stated.T
     mean = float(predicted.mean())
     ratio = actual / np.maximum(predicted, np.finfo(float).tiny)
-    return Calibration(
-        count=len(actual),
-        actual=mean * float(np.quantile(ratio, COVERAGE[0][0])),
-        predicted=mean,
-        within_error=float((actual <= predicted).mean()),
-        within_bound=float((actual <= bound).mean()),
-    )
+    return {
+        "count": len(actual),
+        "real": mean * float(np.quantile(ratio, COVERAGE[0][0])),
+        "stated": mean,
+        "within_error": float((actual <= predicted).mean()),
+        "within_bound": float((actual <= bound).mean()),
+    }
