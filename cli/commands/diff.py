@@ -34,8 +34,8 @@ from ..outputs import check_outputs
     Entries are compared by name. Without --tolerance the exit code is 0.
     """,
 )
-@click.argument("first", metavar="CUBE", shell_complete=options.complete_cube)
-@click.argument("second", metavar="CUBE", shell_complete=options.complete_cube)
+@click.argument("first", metavar="CUBE", type=options.CUBE)
+@click.argument("second", metavar="CUBE", type=options.CUBE)
 @click.argument("images", metavar="[IMAGE]...", nargs=-1)
 @options.light("Illuminant", "D65 A FL2 FL11 LED-B3")
 @options.tolerance(

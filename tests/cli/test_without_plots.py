@@ -5,7 +5,7 @@ import subprocess
 import sys
 
 WITHOUT = """import sys
-sys.modules.update(matplotlib=None, PIL=None)
+sys.modules.update(matplotlib=None)
 from uplift_cli.main import main
 for line in sys.argv[1:]:
     main(line.split(), standalone_mode=False)
