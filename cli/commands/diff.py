@@ -1,4 +1,4 @@
-"""``uplift diff``: where two cubes differ."""
+"""``uplift lab diff``: where two cubes differ."""
 
 from __future__ import annotations
 
@@ -25,10 +25,10 @@ from ..outputs import check_outputs
 
     \b
     Examples:
-      uplift diff macbeth-32.uplift sRGB
-      uplift diff macbeth-32.uplift sRGB wood.png -o wood-diff.html
+      uplift lab diff macbeth-32.uplift sRGB
+      uplift lab diff macbeth-32.uplift sRGB wood.png -o wood-diff.html
       uplift build --atlas macbeth --library fabrics.csv -o fabrics.uplift
-      uplift diff macbeth-32.uplift fabrics.uplift --tolerance 50 --format json
+      uplift lab diff macbeth-32.uplift fabrics.uplift --tolerance 50
 
     The cubes may have different lattices, models, atlases and ranges, in one RGB space.
     Entries are compared by name. Without --tolerance the exit code is 0.
