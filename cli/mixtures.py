@@ -1,4 +1,4 @@
-"""Mixtures of ``uplift mix``, printed and drawn."""
+"""Mixtures of ``uplift paints mix``, printed and drawn."""
 
 from __future__ import annotations
 

@@ -29,7 +29,7 @@ PROVEN = 2
 
 def hex_codes(paints: Paints, reflectance: Array) -> list[str]:
     """Return '#rrggbb' of reflectances (n, N) at the wavelengths of paints, as `uplift
-    mix` does.
+    paints mix` does.
     """
     from uplift.colorimetry.gamut import map_to_gamut
     from uplift.extras.colour import srgb
