@@ -2,6 +2,8 @@
 ingredients with their parts.
 """
 
+from __future__ import annotations
+
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -20,11 +22,11 @@ from uplift.extras.files.csv import is_decimal, parse_decimal
 from uplift.extras.paint.optics import Coat, Surface, add_lights, ramp, stack_filters
 from uplift.extras.paint.paints import Paints
 from uplift.extras.paint.pigments import Pigment, Scattering
-from uplift.lookup.cube import Cube
 
 # A mixture of measured paints loads no reader of colours and files.
 if TYPE_CHECKING:
     from uplift.extras.colour.spaces import ImageSpace
+    from uplift.lookup.cube import Cube
 
 PARTS = re.compile(r"\s*([0-9.+-][0-9.,eE+-]*)\s*:(.*)", re.DOTALL)
 CONSTANT_SPECTRA = {"white": 1.0, "black": 0.0}
@@ -84,7 +86,7 @@ class SpectrumResolver:
     cube: Cube
     atlas: Atlas
     wavelengths: Array
-    space: "ImageSpace | None" = None
+    space: ImageSpace | None = None
     method: str = "error"
 
     @property
