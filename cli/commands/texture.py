@@ -285,7 +285,6 @@ def convert(
     """
     enable_jit_cache()
     from uplift.extras import texture
-    from uplift.extras.scene.passes.settings import jobs_of_passes
     from uplift.extras.texture.sequence import converter_for
 
     begin = time.perf_counter()
@@ -306,6 +305,8 @@ def convert(
         jobs.append(job)
     inputs = [*click.get_current_context().meta.get(INPUTS, ())]
     if passes is not None:
+        from uplift.extras.scene.passes.settings import jobs_of_passes
+
         inputs.append(passes)
         jobs = jobs_of_passes(jobs, os.path.abspath(passes))
     pending = texture.pending(jobs, inputs=inputs)

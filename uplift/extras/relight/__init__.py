@@ -1,1 +1,4 @@
-"""Images under other lights: as figures, as a page, and at full size."""
+"""Images under other lights, by products of RGB and by spectra: figures, a page, and
+OpenEXR at full size. How images are read and written is not here, but in
+`uplift.extras.images`.
+"""
