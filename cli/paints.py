@@ -49,7 +49,7 @@ def paint_fields(paints: Paints) -> dict[str, Any]:
             key: value.tolist() if isinstance(value, np.ndarray) else value
             for key, value in row.items()
         }
-        rows.append({"colour": colour, **values})
+        rows.append({"name": row["name"], "colour": colour, **values})
     return {
         "wavelengths": paints.wavelengths.tolist(),
         "surface": asdict(paints.surface),

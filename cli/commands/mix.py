@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     from uplift.lookup.cube import Cube
 
 SUMS = ("filter", "light")
-"""Kinds that are no coats."""
+"""Kinds without coats."""
 COAT = ("plate", "over", "plot_path")
 
 

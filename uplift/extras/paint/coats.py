@@ -139,8 +139,21 @@ class Dyes:
         thickness: float | None = None,
         surface: Surface = NO_SURFACE,
     ) -> Coat:
-        """Make a coat in optical contact with its ground; see `Pigments.coat`. It is
-        one unit thick by default.
+        """Make a coat in optical contact with its ground.
+
+        Parameters
+        ----------
+        parts : array_like of shape (..., n)
+            Amounts of the dyes.
+        thickness : float, optional
+            Thickness in units, by default 1.
+        surface : Surface
+            Surface of the vehicle.
+
+        Returns
+        -------
+        Coat
+            The coat; ``coat.over(ground)`` is its reflectance on a ground.
         """
         transmittance = self._transmittance(parts, thickness, surface)
         return Coat(Layer(np.zeros_like(transmittance), transmittance), surface)
@@ -169,7 +182,22 @@ class Plates(Dyes):
         thickness: float | None = None,
         surface: Surface = NO_SURFACE,
     ) -> Coat:
-        """Make a plate; see `Dyes.coat`."""
+        """Make a plate.
+
+        Parameters
+        ----------
+        parts : array_like of shape (..., n)
+            Amounts of the dyes.
+        thickness : float, optional
+            Thickness in units, by default 1.
+        surface : Surface
+            Surface of the plate, of which only that from outside counts.
+
+        Returns
+        -------
+        Coat
+            The plate; ``coat.over(ground)`` is its reflectance on a ground.
+        """
         transmittance = self._transmittance(parts, thickness, surface)
         return Coat(plate(transmittance, surface.outside))
 

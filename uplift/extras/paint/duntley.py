@@ -99,7 +99,13 @@ def duntley_layer(beam: Flux, diffuse: Flux, thickness: float) -> DirectedLayer:
 
 @dataclass(frozen=True, eq=False)
 class DuntleyPaints:
-    """Paints by Duntley's constants (n, 6, N), in the order of `CONSTANTS`."""
+    """Paints by the constants of Duntley's theory.
+
+    Parameters
+    ----------
+    constants : ndarray of shape (n, 6, N)
+        K', B', F', K, B and F of each paint, per unit thickness.
+    """
 
     constants: Array
 
@@ -109,8 +115,21 @@ class DuntleyPaints:
         thickness: float | None = None,
         surface: Surface = NO_SURFACE,
     ) -> Coat:
-        """Make a coat, whose constants are means by parts (..., n); see
-        `uplift.extras.paint.coats.Pigments.coat`. It is one unit thick by default.
+        """Make a coat, whose constants are means by parts.
+
+        Parameters
+        ----------
+        parts : array_like of shape (..., n)
+            Amounts of the paints.
+        thickness : float, optional
+            Thickness in units, by default 1.
+        surface : Surface
+            Surface of the vehicle.
+
+        Returns
+        -------
+        Coat
+            The coat; ``coat.over(ground)`` is its reflectance on a ground.
         """
         check_thickness(thickness)
         flat = self.constants.reshape(len(self.constants), -1)

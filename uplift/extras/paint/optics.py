@@ -77,8 +77,19 @@ def weighted_sum(spectra: ArrayLike, weights: Array) -> Array:
 
 
 def add_lights(spectra: ArrayLike, strengths: ArrayLike) -> Array:
-    """Superpose lights (…, n, N) of some strengths (…, n) (eq. 8.1, 8.2): linear in
-    spectra, XYZ and linear RGB.
+    """Superpose lights (eq. 8.1, 8.2): linear in spectra, XYZ and linear RGB.
+
+    Parameters
+    ----------
+    spectra : array_like of shape (..., n, N)
+        Power of the lights.
+    strengths : array_like of shape (..., n)
+        Amounts of the lights.
+
+    Returns
+    -------
+    ndarray of shape (..., N)
+        Power of their sum.
     """
     return weighted_sum(spectra, as_amounts(strengths))
 
@@ -91,8 +102,20 @@ def average_areas(spectra: ArrayLike, parts: ArrayLike) -> Array:
 
 
 def stack_filters(transmittance: ArrayLike, thickness: ArrayLike) -> Array:
-    """Multiply transmittances (…, n, N), each to the power of its thickness (…, n),
-    without reflections (eq. 9.1).
+    """Multiply transmittances, each to the power of its thickness, without reflections
+    (eq. 9.1).
+
+    Parameters
+    ----------
+    transmittance : array_like of shape (..., n, N)
+        Transmittance of the filters, one unit thick.
+    thickness : array_like of shape (..., n)
+        Thickness of each.
+
+    Returns
+    -------
+    ndarray of shape (..., N)
+        Transmittance of all.
     """
     powers = as_amounts(thickness)[..., None]
     return np.prod(np.asarray(transmittance, dtype=float) ** powers, axis=-2)
@@ -289,8 +312,18 @@ class Surface:
         return beneath_surface(measured, self.outside, self.inside)
 
     def beneath(self, measured: ArrayLike) -> Array:
-        """Return the reflectance beneath the surface, in [0, 1]: what is darker than
-        the surface alone is black.
+        """Return the reflectance beneath the surface in [0, 1].
+
+        Parameters
+        ----------
+        measured : array_like
+            Measured reflectance.
+
+        Returns
+        -------
+        ndarray
+            Internal reflectance, 0 where the measured one is below that of the surface
+            alone.
         """
         return np.clip(self.remove(measured), 0, 1)
 

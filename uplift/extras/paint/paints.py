@@ -204,7 +204,13 @@ class Paints:
         return self.pigments.coat(amounts, thickness, self.surface).over(backing)
 
     def rows(self) -> list[dict[str, Any]]:
-        """Return what is known of each paint by the names of columns."""
+        """Return the numbers of each paint.
+
+        Returns
+        -------
+        list of dict
+            Name, price if known, absorption and scattering, and their errors if known.
+        """
         columns = dict(vars(self.pigments))
         if self.errors is not None:
             errors = vars(self.errors).items()
@@ -225,8 +231,12 @@ class Paints:
         return int(self.reflectance(np.eye(len(self))).min(axis=1).argmax())
 
     def tints(self) -> Array:
-        """Compute the reflectances (P, N) of `TINT_PARTS` parts of the lightest paint
-        to one of each.
+        """Compute the tints with the lightest paint, four parts of it to one.
+
+        Returns
+        -------
+        ndarray, shape (P, N)
+            Reflectance of the opaque tint of each paint.
         """
         alone = np.eye(len(self))
         return self.reflectance(alone + TINT_PARTS * alone[self.lightest])

@@ -78,7 +78,18 @@ class PaintTarget:
     ground: Array | float = 1.0
 
     def colours(self, reflectance: Array) -> Array:
-        """Compute CIE L*a*b* (…, L, 3) of reflectances (…, N) under each light."""
+        """Compute colours under the lights.
+
+        Parameters
+        ----------
+        reflectance : ndarray, shape (..., N)
+            Reflectances at the wavelengths of the lights.
+
+        Returns
+        -------
+        ndarray, shape (..., L, 3)
+            CIE L*a*b* under each light.
+        """
         colours = [lab(reflectance @ light.xyz.T, light.white) for light in self.lights]
         return np.stack(colours, axis=-2)
 
