@@ -91,7 +91,7 @@ def print_numbers(rows: Iterable[tuple[list[float], list[float]]], style: str) -
         ({"rgb": rgb} | row for rgb, values in rows for row in _rows(values)),
         {"rgb": "linear RGB", **_headings("pass", *CHANNELS)},
         digits=".6g",
-        formats={"rgb": ".4f"},
+        formats={"rgb": ".6f"},
     )
     print_result(style, None, table)
 
