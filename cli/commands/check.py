@@ -85,7 +85,7 @@ HEADINGS = {
     "files",
     metavar="[CUBE]...",
     nargs=-1,
-    shell_complete=options.complete_cube,
+    type=options.CUBE,
 )
 @options.atlas_folders
 @options.flag("--update", help="Replace the cubes that differ by the rebuilt ones.")
@@ -106,7 +106,6 @@ HEADINGS = {
     type=options.LIGHT,
     default="A",
     help="Light of the picture, or for ΔE00 of spectra.",
-    shell_complete=options.complete_light,
 )
 @options.plot("Draw the picture, the one expected, and ΔE00")
 @options.table_or_json
@@ -194,7 +193,7 @@ def _rebuild_all(
 def _check(file: str, folders: Sequence[str], progress: ProgressCallback) -> _Check:
     """Rebuild a cube and compare the two."""
     from uplift.extras.report.rebuild import rebuild
-    from uplift.extras.report.regression import compare_rebuilt
+    from uplift.extras.report.regression import RebuildDifference, compare_rebuilt
     from uplift.lookup.cube import load
 
     rebuilt = comparison = error = None
@@ -209,7 +208,8 @@ def _check(file: str, folders: Sequence[str], progress: ProgressCallback) -> _Ch
             comparison = compare_rebuilt(Path(file), stored.data, rebuilt.data)
         except UpliftError as cause:
             error = cause
-    failures = list(comparison.failures) if comparison else []
+    found = comparison or RebuildDifference()
+    failures = found.failures
     changed = [note.problem for note in notes if note.code == "atlas-changed"]
     others = [note.problem for note in notes if note.code != "atlas-changed"]
     if comparison and not failures:
@@ -223,20 +223,13 @@ def _check(file: str, folders: Sequence[str], progress: ProgressCallback) -> _Ch
         "cube": str(Path(file)),
         "passed": not failures,
         "failures": failures,
-        "measures": {},
-        "status": {},
+        "measures": found.measures,
+        "status": found.status,
         "atlas_changed": changed,
         "notes": others,
-        "entries": [],
+        "entries": list(map(asdict, found.entries)),
         "error": error_object(error) if error else None,
     }
-    if comparison:
-        record["measures"] = comparison.measures
-        record["status"] = {
-            "stored": comparison.stored_counts,
-            "rebuilt": comparison.rebuilt_counts,
-        }
-        record["entries"] = list(map(asdict, comparison.entries))
     return _Check(record, rebuilt, error)
 
 

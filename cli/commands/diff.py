@@ -1,4 +1,4 @@
-"""``uplift diff``: where two cubes differ."""
+"""``uplift lab diff``: where two cubes differ."""
 
 from __future__ import annotations
 
@@ -17,6 +17,9 @@ from ..output.progress import progress_bar
 from ..output.table import Table, print_result
 from ..outputs import check_outputs
 
+WORST = 5
+"""Number of the worst colours of each set that are named and drawn."""
+
 
 @click.command(
     "diff",
@@ -25,28 +28,22 @@ from ..outputs import check_outputs
 
     \b
     Examples:
-      uplift diff macbeth-32.uplift sRGB
-      uplift diff macbeth-32.uplift sRGB wood.png -o wood-diff.html
+      uplift lab diff macbeth-32.uplift sRGB
+      uplift lab diff macbeth-32.uplift sRGB wood.png -o wood-diff.html
       uplift build --atlas macbeth --library fabrics.csv -o fabrics.uplift
-      uplift diff macbeth-32.uplift fabrics.uplift --tolerance 50 --format json
+      uplift lab diff macbeth-32.uplift fabrics.uplift --tolerance 50
 
     The cubes may have different lattices, models, atlases and ranges, in one RGB space.
     Entries are compared by name. Without --tolerance the exit code is 0.
     """,
 )
-@click.argument("first", metavar="CUBE", shell_complete=options.complete_cube)
-@click.argument("second", metavar="CUBE", shell_complete=options.complete_cube)
+@click.argument("first", metavar="CUBE", type=options.CUBE)
+@click.argument("second", metavar="CUBE", type=options.CUBE)
 @click.argument("images", metavar="[IMAGE]...", nargs=-1)
 @options.light("Illuminant", "D65 A FL2 FL11 LED-B3")
 @options.tolerance(
     help="Largest ΔE00 that is accepted: the exit code is 1 if a colour differs by "
     "more, if one cube alone lacks a colour, or if entries were added or removed."
-)
-@click.option(
-    "--worst",
-    type=options.Whole(0),
-    default=5,
-    help="Number of worst colours of each set.",
 )
 @options.pixels()
 @options.output(
@@ -60,7 +57,6 @@ def command(
     images: tuple[str, ...],
     lights: tuple[Illuminant, ...],
     tolerance: float | None,
-    worst: int,
     output: str | None,
     style: str,
     force: bool,
@@ -88,8 +84,8 @@ def command(
         if output is not None:
             from uplift.extras.report.diff_page import render_diff
 
-            write_text(render_diff(difference, pictures, worst), output, force=force)
-    figures = to_json(difference, tolerance, worst)
+            write_text(render_diff(difference, pictures, WORST), output, force=force)
+    figures = to_json(difference, tolerance, WORST)
     _print(figures, style)
     if output is not None and style != "json":
         say(f"{output}: where they differ")

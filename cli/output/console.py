@@ -14,17 +14,11 @@ import shutil
 import sys
 import textwrap
 from collections.abc import Iterable, Mapping, Sequence
-from itertools import chain
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import click
 
 from uplift.common.text import json_escapes, printable
-
-if TYPE_CHECKING:
-    from rich.text import Text
-
-    from .tables import SafeTable
 
 MIN_WIDTH = 40
 """Characters of a line, even where a window has fewer."""
@@ -131,47 +125,3 @@ class EscapedOutput:
     def write(self, text: str) -> int:
         """Write lines."""
         return sys.stdout.write("\n".join(map(printable, text.split("\n"))))
-
-
-def swatch(codes: Iterable[int]) -> Text:
-    """Return a cell with a background of 8-bit sRGB."""
-    from rich.text import Text
-
-    return Text("   ", style="on rgb({},{},{})".format(*codes))
-
-
-def make_table(
-    texts: Iterable[str] = (), numbers: Iterable[str] = (), **options: Any
-) -> SafeTable:
-    """Return a table of left-aligned texts followed by right-aligned numbers."""
-    from rich import box
-
-    from .tables import SafeTable
-
-    table = SafeTable(**{"box": box.SIMPLE_HEAD} | options)
-    for heading in texts:
-        table.add_column(heading, no_wrap=True)
-    for heading in numbers:
-        table.add_column(heading, justify="right", no_wrap=True)
-    return table
-
-
-def show(*tables: SafeTable) -> None:
-    """Print tables. Texts are wrapped between words; a table wider than the window is
-    divided by columns.
-    """
-    from rich.console import Console
-
-    from .tables import table_width
-
-    divided = chain.from_iterable(table.parts(window_width()) for table in tables)
-    for number, table in enumerate(divided):
-        if number:
-            say()
-        width = max(window_width(), table_width(table.columns))
-        body = list(table.take_body())
-        Console(
-            file=sys.stdout, width=width, highlight=False, markup=False, emoji=False
-        ).print(table)
-        if body:
-            emit("\n".join(body))

@@ -7,6 +7,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from itertools import chain, repeat
 from math import isnan
+from operator import attrgetter
 from typing import TYPE_CHECKING, Any
 
 from uplift.common.text import printable
@@ -46,6 +47,7 @@ def answer_rows(answers: Answers, block: QueryBlock) -> list[dict[str, Any]]:
     from uplift.extras.colour.srgb import hex_codes as srgb_codes
 
     count = len(block)
+    label = attrgetter("label")
     lights = {}
     for lit, display in zip(answers.lights, answers.displays, strict=True):
         xyz = block.light_xyz[lit.name]
@@ -70,7 +72,7 @@ def answer_rows(answers: Answers, block: QueryBlock) -> list[dict[str, Any]]:
         **coordinates(answers.cube, block.rgb),
         "round_trip": _rows(round_trip, count),
         "cell": block.cell.tolist(),
-        "status": [[status.label for status in row] for row in block.statuses],
+        "status": [list(map(label, statuses)) for statuses in block.statuses],
         "realisable": block.realisable.tolist(),
         "entry": block.entry,
         "standard_error": _known(block.errors[:, 0]),

@@ -1,4 +1,4 @@
-"""``uplift bounds``."""
+"""``uplift lab bounds``."""
 
 import csv
 import io

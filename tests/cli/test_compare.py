@@ -1,4 +1,4 @@
-"""``uplift compare``."""
+"""``uplift lab compare``."""
 
 import csv
 import json

@@ -1,4 +1,4 @@
-"""``uplift palette``."""
+"""``uplift lab palette``."""
 
 import matplotlib.image
 import numpy as np

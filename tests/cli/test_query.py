@@ -130,7 +130,7 @@ def test_rounding_is_not_out_of_gamut(run, ask):
     assert all(abs(value) > 1e-12 or value == 0 for value in answer["reflectance"])
 
 
-@pytest.mark.parametrize("command", [("query",), ("bounds",), ("mix",)])
+@pytest.mark.parametrize("command", [("query",), ("lab bounds",), ("paints mix",)])
 def test_the_advice_on_colours_outside_the_gamut_works_as_it_stands(
     run, refuse, command
 ):

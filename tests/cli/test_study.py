@@ -1,4 +1,4 @@
-"""``uplift study``."""
+"""``uplift lab study``."""
 
 import csv
 import io

@@ -1,4 +1,4 @@
-"""``uplift wavelengths``."""
+"""``uplift lab wavelengths``."""
 
 import matplotlib.image
 import pytest
