@@ -22,26 +22,10 @@ def families_like(measured: Array) -> tuple[str, ...]:
     """
     if not len(measured):
         return ()
-    same = families_with(measured)
-    limit = LOOK_ALIKE * np.sqrt(measured.shape[1])
     names = []
     for family in shipped_library():
         distance = KDTree(family.measured).query(measured)[0]
-        if family.name in same or (distance <= limit).mean() >= MANY:
+        rms = distance / np.sqrt(measured.shape[1])
+        if rms.min() <= SAME_RMS or (rms <= LOOK_ALIKE).mean() >= MANY:
             names.append(family.name)
     return tuple(names)
-
-
-def families_with(measured: Array) -> tuple[str, ...]:
-    """Names of the shipped families that contain one of some spectra (n, 81), to leave
-    them out of tests on these.
-    """
-    if not len(measured):
-        return ()
-    tree = KDTree(measured)
-    limit = SAME_RMS * np.sqrt(measured.shape[1])
-    nearest = {
-        family.name: tree.query(family.measured)[0].min()
-        for family in shipped_library()
-    }
-    return tuple(name for name, distance in nearest.items() if distance <= limit)
