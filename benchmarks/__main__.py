@@ -15,7 +15,8 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 from benchmarks import ROOT, read_answers
-from uplift.extras.timing import ONE_THREAD, commit_time
+from benchmarks.timing import commit_time
+from uplift.extras.timing import ONE_THREAD
 
 STALE = "stale"
 """In place of the names of questions: those whose answers are not of this commit."""

@@ -9,12 +9,12 @@ from scipy.optimize import differential_evolution
 
 import uplift
 from benchmarks import MACBETH, Row, summary
+from benchmarks.timing import time_call
 from uplift.atlas.resampling import on_grid
 from uplift.colorimetry import observer
 from uplift.colorimetry.delta_e import delta_e_rgb, delta_e_spectra
 from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Array
-from uplift.extras.timing import time_call
 from uplift.lab.method import at_1_nm, published_srgb
 from uplift.lab.study.sensitivity import node_spectra
 from uplift.lookup.cube import Cube

@@ -18,7 +18,7 @@ from uplift.cube.data import CubeData, EntrySpectra
 from uplift.extras.export.program import write_program
 from uplift.extras.export.runtime import HEADER, write_header
 from uplift.extras.files.csv import csv_text
-from uplift.extras.images.processes import call_in_child
+from uplift.extras.processes import call_in_child
 from uplift.extras.report.conformance import (
     PICTURE_LIMITS,
     Conformance,

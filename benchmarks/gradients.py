@@ -13,6 +13,7 @@ import numpy as np
 import uplift
 from benchmarks import DOCS, Row
 from benchmarks.checker import chart, chart_panel
+from benchmarks.timing import time_call
 from uplift.colorimetry.delta_e import delta_e_rgb
 from uplift.common.arrays import Array
 from uplift.common.compilation import compiled
@@ -20,7 +21,6 @@ from uplift.extras.pages.figure import write_figure
 from uplift.extras.pages.marks import line
 from uplift.extras.pages.panels import Axis, Panel, draw
 from uplift.extras.photographs.photograph import photograph
-from uplift.extras.timing import time_call
 from uplift.lookup import bulk
 from uplift.lookup.cube import Cube
 from uplift.lookup.interpolate import is_inexact

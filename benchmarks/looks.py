@@ -43,7 +43,7 @@ DAYLIGHT = "D65"
 COLUMNS = 3
 """Lights of a look in the picture, with daylight."""
 search = partial(bounds, divisions=3)
-"""As ``uplift bounds`` for one colour."""
+"""As ``uplift lab bounds`` for one colour."""
 
 
 @cache

@@ -47,7 +47,7 @@ RAMPS = {
 DRAWN = {
     "mean of sRGB codes": "mean of sRGB codes",
     "exported mixer": "exported mixer",
-    DEFAULT: "uplift mix",
+    DEFAULT: "uplift paints mix",
 }
 """Ways of mixing, and their titles."""
 STEPS = 13

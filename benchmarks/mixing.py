@@ -27,7 +27,7 @@ ARTISTS = ("#002185", "#fcd200")
 """Cobalt blue and Hansa yellow, as Mixbox's table has them."""
 BLUE_YELLOW = ("#005fa0", "#ffd200")
 DEFAULT = "Y^¾ exp(h / 4)"
-"""Rule of ``uplift mix``."""
+"""Rule of ``uplift paints mix``."""
 STEPS = 11
 DRAWN = (
     "Kubelka–Munk", "Kubelka–Munk, in oil (index 1.5)", "Kubelka–Munk, S = √R",

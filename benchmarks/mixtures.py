@@ -154,7 +154,7 @@ def _shares(rows: list[dict[str, str]]) -> Array:
 
 
 def by_spectra(cube: Cube, rule: Scattering) -> MixRgb:
-    """Return the function that mixes as ``uplift mix`` does, with a rule for S."""
+    """Return a function that mixes as ``uplift paints mix``, with a rule for S."""
 
     def mix(rgb: Array, shares: Array) -> Array:
         paints = from_opaque(cube.reflectance(rgb), rule)

@@ -16,6 +16,7 @@ from benchmarks import DOCS, Row
 from benchmarks.browser import browser
 from benchmarks.checker import chart
 from benchmarks.passes_page import page
+from benchmarks.timing import time_call
 from uplift.colorimetry import observer
 from uplift.common.arrays import Array
 from uplift.common.files import write_text
@@ -30,7 +31,6 @@ from uplift.extras.scene.passes.bands import CHANNELS, Bands
 from uplift.extras.scene.passes.choice import judging_paths
 from uplift.extras.scene.passes.materials import Materials
 from uplift.extras.scene.passes.passes import Passes
-from uplift.extras.timing import time_call
 from uplift.fit.families import shipped_library
 from uplift.samples import sample_path
 

@@ -19,10 +19,10 @@ from benchmarks.passes import without_family
 from uplift.colorimetry import observer
 from uplift.colorimetry.delta_e import delta_e_2000, lab
 from uplift.common.arrays import Array
-from uplift.extras.images.processes import call_in_child
 from uplift.extras.pages.figure import write_figure
 from uplift.extras.pages.marks import error_map
 from uplift.extras.pages.panels import Panel, draw
+from uplift.extras.processes import call_in_child
 from uplift.extras.scene.passes.bands import CHANNELS
 from uplift.extras.scene.passes.choice import choose
 from uplift.extras.scene.passes.passes import scaled_power

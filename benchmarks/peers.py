@@ -16,9 +16,10 @@ import numpy as np
 import uplift
 from benchmarks import ROOT, Row
 from benchmarks.programs import output
+from benchmarks.timing import time_call
 from uplift.colorimetry import observer
 from uplift.common.arrays import Array
-from uplift.extras.timing import time_call, timing_stats
+from uplift.extras.timing import timing_stats
 from uplift.lab.study.sensitivity import node_spectra
 from uplift.lattice.lattice import Lattice, axis_nodes
 from uplift.models.model import evaluate

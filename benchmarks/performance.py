@@ -11,9 +11,9 @@ import numpy as np
 import uplift
 from benchmarks import MACBETH, UPLIFT, Row
 from benchmarks.materials import MIXTURE, SENSOR, materials
+from benchmarks.timing import time_call, time_command
 from uplift.atlas.atlas import Atlas, Entry
 from uplift.common.arrays import Array
-from uplift.extras.timing import time_call, time_command
 
 RUNS = 3
 """Runs of processes and builds, which take long and vary little."""

@@ -13,8 +13,8 @@ from pathlib import Path
 import uplift
 from benchmarks import MACBETH, UPLIFT, Row
 from benchmarks.pictures import pictures
+from benchmarks.timing import run_command, time_call
 from uplift.extras.texture.scene_colours import Images
-from uplift.extras.timing import run_command, time_call
 from uplift.lookup.cube import Cube
 from uplift.samples import copy_samples
 

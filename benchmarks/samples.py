@@ -10,6 +10,7 @@ import numpy as np
 import uplift
 from benchmarks import DOCS, Row
 from benchmarks.materials import inside, spectra
+from benchmarks.timing import time_call
 from uplift.colorimetry import observer
 from uplift.colorimetry.delta_e import delta_e_spectra
 from uplift.colorimetry.gamut import SRGB
@@ -20,7 +21,7 @@ from uplift.extras.pages.marks import line, picture
 from uplift.extras.pages.panels import Axis, Panel, draw, spectra_panel
 from uplift.extras.photographs.photograph import photograph
 from uplift.extras.photographs.samples import prepare_samples
-from uplift.extras.timing import TimingStats, time_call
+from uplift.extras.timing import TimingStats
 from uplift.lookup.cube import Cube
 from uplift.lookup.errors_under_lights import evidence
 

@@ -9,13 +9,13 @@ import numpy as np
 import uplift
 from benchmarks import CUBES, MACBETH, UPLIFT, Row, summary
 from benchmarks.pictures import pictures
+from benchmarks.timing import time_command
 from uplift.colorimetry import observer
 from uplift.colorimetry.delta_e import delta_e_rgb
 from uplift.common.arrays import Array
 from uplift.extras import texture
 from uplift.extras.mitsuba.texels import Samples, read_texels
 from uplift.extras.texture.encodings import PixelEncoding
-from uplift.extras.timing import time_command
 from uplift.lookup.blocks import blockwise
 from uplift.models.model import evaluate
 from uplift.samples import sample_path

@@ -11,6 +11,7 @@ import numpy as np
 
 from benchmarks import UPLIFT, Row, six_numbers, summary
 from benchmarks.materials import FETCHED, SENSOR, SHIPPED, materials, other_halves
+from benchmarks.timing import ratio, run_command, time_in_turn
 from benchmarks.two_lights_picture import draw_pictures, take_photographs
 from uplift.common.arrays import Array
 from uplift.extras.images.exr import make_part, write_parts
@@ -18,7 +19,6 @@ from uplift.extras.images.picture import read_picture
 from uplift.extras.photographs.answers import Photographs
 from uplift.extras.photographs.errors import photographed
 from uplift.extras.photographs.photograph import Noise
-from uplift.extras.timing import run_command, time_in_turn
 from uplift.lab.runner import Errors, Task, join, named_lights, spectrum_errors
 from uplift.lookup.cube import Cube
 from uplift.lookup.errors_under_lights import Evidence, errors_from, evidence
@@ -192,7 +192,7 @@ def texture() -> Row:
         )
     return {
         "size": day.shape[:2],
-        "ratio": times["two"].ratio_to(times["one"]),
+        "ratio": ratio(times["two"], times["one"]),
         "megabytes": {name: timing.megabytes for name, timing in times.items()},
     }
 

@@ -1,4 +1,4 @@
-"""Mixtures of ``uplift mix``, printed and drawn."""
+"""Mixtures of ``uplift paints mix``, printed and drawn."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from .output.answers import (
     print_spectrum,
 )
 from .output.console import print_json
-from .output.table import Table, swatch
+from .output.table import Format, Table, swatch
 
 if TYPE_CHECKING:
     from uplift.common.arrays import Array
@@ -23,6 +23,11 @@ if TYPE_CHECKING:
 
 MIXTURE_MAPPING = "scale"
 """How mixtures are mapped into the gamut: it keeps the hue of bright ones."""
+
+
+def coloured(code: str) -> Any:
+    """Return a cell with the code of a colour and a patch of it."""
+    return swatch(code, code)
 
 
 def plot_ramp(mixture: Mixture, cube: Cube, path: str, *, force: bool) -> None:
@@ -91,10 +96,7 @@ def print_theories(recipe: Recipe, cube: Cube, method: str, style: str) -> None:
         colour = map_to_gamut(mixed, sensor, method).rgb[0]
         rows.append({"theory": title, **_colour(cube, colour)})
     headings = {"theory": "theory", "hex": "hex", "rgb": "linear RGB"}
-    formats = {
-        "hex": lambda code: swatch(code, code),
-        "rgb": ".6f",
-    }
+    formats: dict[str, Format] = {"hex": coloured, "rgb": ".6f"}
     table = Table(rows, headings, formats=formats)
     if style == "json":
         print_json({"names": recipe.names, "theories": rows}, indent=None)

@@ -108,7 +108,7 @@ class Parsed(click.ParamType):  # type: ignore[type-arg]
     def shell_complete(
         self, ctx: click.Context, param: click.Parameter, incomplete: str
     ) -> list[CompletionItem]:
-        """Return the names that begin with a text, whatever their case."""
+        """Return the names that begin with a text in upper or lower case."""
         # first: bash drops the items before it
         items = [CompletionItem(incomplete, type="file")] * self.files
         for name in self.names():

@@ -29,9 +29,6 @@ from .option_types import OutputFile as OutputFile
 from .option_types import Parsed as Parsed
 from .option_types import Whole as Whole
 
-complete_cube = CUBE.shell_complete
-complete_light = LIGHT.shell_complete
-complete_space = SPACE.shell_complete
 Decorator = Callable[[Callable[..., Any]], Callable[..., Any]]
 OUTPUT_FORMAT = "uplift.output-format"
 """Key of the context's ``meta`` under which ``--format`` is kept."""
@@ -295,6 +292,3 @@ atlas_folders = repeatable(
 )
 force = flag("--force", help="Replace existing files.")
 quiet = flag("-q", "--quiet", help="Print only warnings and errors.")
-verbose = flag(
-    "-v", "--verbose", help="Print a line for every round and improvement step."
-)

@@ -12,9 +12,7 @@ def space(camera: str = "") -> options.Decorator:
         "RGB space by its name in colour-science or OpenColorIO, such as "
         f"ACEScg{camera}."
     )
-    return click.option(
-        "--space", default="sRGB", type=SPACE, metavar="TEXT", help=text
-    )
+    return click.option("--space", default="sRGB", type=SPACE, help=text)
 
 
 def observer(camera: str = "") -> options.Decorator:

@@ -19,8 +19,9 @@ from itertools import chain
 from pathlib import Path
 from typing import Any
 
-import click
-from uplift_cli.main import COMMANDS, main
+from uplift_cli.main import main
+
+from tests.cli.conftest import commands
 
 ROOT = Path(__file__).parents[1]
 BLOCKS = re.compile(r"^```(\S*)[^\n]*\n(.*?)^```", re.DOTALL | re.MULTILINE)
@@ -79,17 +80,15 @@ def page_examples(text: str) -> list[str]:
 
 def help_examples() -> dict[str, list[str]]:
     """Return the examples of the help of every command, with those of its subcommands,
-    once each.
+    once each. Commands of the laboratory are listed apart.
     """
-    listed = {}
-    with click.Context(main, **main.context_settings) as context:
-        for name in COMMANDS:
-            command = main.get_command(context, name)
-            assert command is not None
-            commands = [command, *getattr(command, "commands", {}).values()]
-            text = "\n".join(command.help or "" for command in commands)
-            lines = re.findall(r"^ *(uplift .*?) *$", text, re.MULTILINE)
-            listed[f"{name} --help"] = list(dict.fromkeys(lines))
+    listed: dict[str, list[str]] = {}
+    for path, command in commands(main).items():
+        words = path.split()
+        name = " ".join(words[:2] if words[0] == "lab" else words[:1])
+        found = re.findall(r"^ *(uplift .*?) *$", command.help or "", re.MULTILINE)
+        lines = listed.setdefault(f"{name} --help", [])
+        lines += [line for line in dict.fromkeys(found) if line not in lines]
     return listed
 
 

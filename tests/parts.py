@@ -18,7 +18,7 @@ import numpy as np
 import pytest
 
 from benchmarks.browser import browser
-from uplift.extras.images.processes import call_in_child
+from uplift.extras.processes import call_in_child
 
 FETCHED = Path(__file__).parents[1] / "out" / "parts"
 """A virtual environment; see tests/fetch_parts.py."""

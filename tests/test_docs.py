@@ -14,10 +14,12 @@ from types import ModuleType
 import click
 import numpy as np
 import pytest
+from uplift_cli.commands.lab import SUMMARIES
 from uplift_cli.main import COMMANDS, main
 
 import uplift
 from benchmarks.__main__ import pages
+from tests.cli.conftest import commands
 from tests.conftest import ROOT
 from tests.examples import BLOCKS, CUBE, examples, examples_by_page, page_examples
 from tests.helpers import output_of, warns
@@ -49,12 +51,13 @@ OUTPUTS = ("-o", "--output", "--plot", "--plot-spectra", "--html", ">")
 """Options whose value is a file that is written."""
 
 
-@pytest.mark.parametrize("name", COMMANDS)
+@pytest.mark.parametrize(
+    "name", [*COMMANDS, *map("lab {}".format, SUMMARIES), "paints mix"]
+)
 def test_the_page_of_commands_has_every_command_and_help_has_examples(name):
     assert f"**`uplift {name}`**" in REFERENCE
-    with click.Context(main, **main.context_settings) as context:
-        command = main.get_command(context, name)
-    assert re.search(rf"Examples:\n +uplift {name}\b", command.help)
+    text = commands(main)[name].help
+    assert re.search(rf"Examples:\n +uplift {name}\b", text)
 
 
 @pytest.mark.parametrize("line", LINES)

@@ -35,7 +35,7 @@ FEW = (
     "uplift lights query 30 22 9",
     "uplift info macbeth-32.uplift --format json | jq .status",
     "uplift atlas paints.csv -o paints.txt",
-    "uplift palette metamers.toml",
+    "uplift lab palette metamers.toml",
     "uplift chart --recommend --time-ns 500",
 )
 """Quick ones, in reading order: later lines use files of earlier ones. `make examples`

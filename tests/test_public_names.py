@@ -26,7 +26,7 @@ def test_every_public_name_is_stored():
 @pytest.mark.parametrize(
     "name",
     [
-        "command uplift study held-out",
+        "command uplift lab study held-out",
         "error forked-process",
         "exit code 70",
         "reads uplift cube 3",

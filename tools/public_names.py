@@ -125,9 +125,20 @@ def _described(name: str, value: Any) -> Iterator[str]:
     if isinstance(value, classmethod | staticmethod):
         value = value.__func__
     if callable(value):
-        for parameter in inspect.signature(value).parameters:
+        for parameter in _parameters(value):
             if parameter not in ("self", "cls"):
                 yield f"{name}({parameter})"
+
+
+def _parameters(function: Any) -> Iterator[str]:
+    """Yield the names of parameters, and of the keywords that ``**names`` unpacks."""
+    for parameter in inspect.signature(function).parameters.values():
+        keywords = re.fullmatch(r"Unpack\[(\w+)\]", str(parameter.annotation))
+        if keywords is None:
+            yield parameter.name
+        else:
+            module = importlib.import_module(function.__module__)
+            yield from getattr(module, keywords[1]).__annotations__
 
 
 def stored_names() -> list[str]:

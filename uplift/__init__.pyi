@@ -57,5 +57,6 @@ from .extras.looks.look import read_looks as read_looks
 from .lookup.cube import Cube as Cube
 from .lookup.cube import load as load
 from .pipeline.build import build as build
+from .pipeline.options import Options as Options
 
 __version__: str

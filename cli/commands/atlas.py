@@ -13,7 +13,7 @@ from uplift.common.text import pluralise
 
 from .. import options, sensor_options
 from ..output.answers import as_lists
-from ..output.console import paragraph, print_fields, say
+from ..output.console import has_colours, paragraph, print_fields, say
 from ..output.table import Table, print_result, swatch
 from ..outputs import check_outputs
 
@@ -154,13 +154,16 @@ def _list_entries(
     return rows, smallest_space(resampled.values, illuminant, sensor.observer)
 
 
-def _show_rgb(sensor: Sensor, rgb: list[float]) -> Text:
+def _show_rgb(sensor: Sensor, rgb: list[float]) -> str | Text:
+    text = " ".join(map("{: .4f}".format, rgb))
+    if not has_colours():
+        return text
     import numpy as np
 
     from uplift.extras.colour.srgb import hex_codes
 
     (code,) = hex_codes(np.array([rgb]), sensor)
-    return swatch(code, " ".join(map("{: .4f}".format, rgb)))
+    return swatch(code, text)
 
 
 def _print_notes(

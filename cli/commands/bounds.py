@@ -1,4 +1,4 @@
-"""``uplift bounds``: what reflectances of one colour can do under other lights."""
+"""``uplift lab bounds``: what reflectances of one colour can do under other lights."""
 
 from __future__ import annotations
 
@@ -63,11 +63,11 @@ class Cut(NamedTuple):
 
     \b
     Examples:
-      uplift bounds '#8a2a20'
-      uplift bounds '#8a2a20' --light A --light FL11 --plot bounds.png
-      uplift bounds '#8a2a20' --light A --light FL11 --html red.html
-      uplift bounds '#8a2a20' --also A:'#9a3020' --light FL11
-      uplift bounds --cube macbeth-32.uplift 0.8 0.2 0.1 --format json
+      uplift lab bounds '#8a2a20'
+      uplift lab bounds '#8a2a20' --light A --light FL11 --plot bounds.png
+      uplift lab bounds '#8a2a20' --light A --light FL11 --html red.html
+      uplift lab bounds '#8a2a20' --also A:'#9a3020' --light FL11
+      uplift lab bounds --cube macbeth-32.uplift 0.8 0.2 0.1 --format json
 
     With --also, the colour in a photograph under another light, they are bounds of the
     reflectances that have both colours, after those of the one.

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from uplift.atlas.atlas import Source
     from uplift.lookup.cube import Cube
 
-ALLOWED_WITH_PLAN = {"plan_path", "output", "debug", "force", "quiet", "verbose"}
+ALLOWED_WITH_PLAN = {"plan_path", "output", "debug", "force", "quiet"}
 """Parameters that may accompany --plan."""
 OTHER_FILES = {
     ".csv", ".cube", ".exr", ".h", ".html", ".json", ".npz", ".pdf", ".png", ".svg",
@@ -221,13 +221,11 @@ def parse_range(
 )
 @options.force
 @options.quiet
-@options.verbose
 def command(
     plan_path: str | None,
     output: str | None,
     force: bool,
     quiet: bool,
-    verbose: bool,
     **settings: Any,
 ) -> None:
     enable_jit_cache()
@@ -243,12 +241,12 @@ def command(
     slices = path.with_suffix(".exr") if debug else None
     check_outputs(path, slices, inputs=task.inputs)
     begin = time.perf_counter()
-    with progress_bar(quiet=quiet, verbose=verbose) as progress:
+    with progress_bar(quiet=quiet) as progress:
         cube, notes = collect_notes(partial(task.make, progress=progress))
     notes = [*task.notes, *notes]
     cube.save(path, force=force)
     if slices is not None:
-        from uplift.extras.images.exr import write_slices
+        from uplift.extras.images.slices import write_slices
 
         write_slices(cube.data, slices, force=force)
     if quiet:

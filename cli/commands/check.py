@@ -85,7 +85,7 @@ HEADINGS = {
     "files",
     metavar="[CUBE]...",
     nargs=-1,
-    shell_complete=options.complete_cube,
+    type=options.CUBE,
 )
 @options.atlas_folders
 @options.flag("--update", help="Replace the cubes that differ by the rebuilt ones.")
@@ -106,7 +106,6 @@ HEADINGS = {
     type=options.LIGHT,
     default="A",
     help="Light of the picture, or for ΔE00 of spectra.",
-    shell_complete=options.complete_light,
 )
 @options.plot("Draw the picture, the one expected, and ΔE00")
 @options.table_or_json

@@ -1,4 +1,4 @@
-"""``uplift compare``: accuracy and cost of spectral representations for a renderer."""
+"""``uplift lab compare``: accuracy and cost of representations for a renderer."""
 
 from __future__ import annotations
 
@@ -53,12 +53,12 @@ SPECTRA = ("surfaces.csv", "lights.csv")
 
     \b
     Examples:
-      uplift compare --quick
-      uplift compare --quick --all
-      uplift compare --tolerance 1.0
-      uplift compare --atlas paints.csv --light LED-B3 --light HP1 --tolerance 0.5
-      uplift compare --filters --output filters --force
-      uplift compare --atlas paints.csv --light FL11 --write PF16 -o filtered
+      uplift lab compare --quick
+      uplift lab compare --quick --all
+      uplift lab compare --tolerance 1.0
+      uplift lab compare --atlas paints.csv --light HP1 --tolerance 0.5
+      uplift lab compare --filters --output filters --force
+      uplift lab compare --atlas paints.csv --light FL11 --write PF16 -o filtered
     """,
 )
 @options.atlas("Surfaces", DEFAULT_ATLASES)

@@ -1,4 +1,4 @@
-"""``uplift diff``: where two cubes differ."""
+"""``uplift lab diff``: where two cubes differ."""
 
 from __future__ import annotations
 
@@ -28,17 +28,17 @@ WORST = 5
 
     \b
     Examples:
-      uplift diff macbeth-32.uplift sRGB
-      uplift diff macbeth-32.uplift sRGB wood.png -o wood-diff.html
+      uplift lab diff macbeth-32.uplift sRGB
+      uplift lab diff macbeth-32.uplift sRGB wood.png -o wood-diff.html
       uplift build --atlas macbeth --library fabrics.csv -o fabrics.uplift
-      uplift diff macbeth-32.uplift fabrics.uplift --tolerance 50 --format json
+      uplift lab diff macbeth-32.uplift fabrics.uplift --tolerance 50
 
     The cubes may have different lattices, models, atlases and ranges, in one RGB space.
     Entries are compared by name. Without --tolerance the exit code is 0.
     """,
 )
-@click.argument("first", metavar="CUBE", shell_complete=options.complete_cube)
-@click.argument("second", metavar="CUBE", shell_complete=options.complete_cube)
+@click.argument("first", metavar="CUBE", type=options.CUBE)
+@click.argument("second", metavar="CUBE", type=options.CUBE)
 @click.argument("images", metavar="[IMAGE]...", nargs=-1)
 @options.light("Illuminant", "D65 A FL2 FL11 LED-B3")
 @options.tolerance(

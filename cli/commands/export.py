@@ -86,9 +86,7 @@ HELP = """Write a cube in a format that other tools read.
     everyday=("output", "style", "light", "table", "runtime", "force"),
     help=HELP.replace("{formats}", _summary()),
 )
-@click.argument(
-    "cube", metavar="[CUBE]", required=False, shell_complete=options.complete_cube
-)
+@click.argument("cube", metavar="[CUBE]", required=False, type=options.CUBE)
 @options.output(help="File to write. [default: CUBE's name in the current folder]")
 @click.option(
     "--format",
@@ -109,7 +107,6 @@ HELP = """Write a cube in a format that other tools read.
     "--light",
     metavar="NAME|FILE",
     type=options.LIGHT,
-    shell_complete=options.complete_light,
     help="Illuminant of a cube, clf or film table, or the file of a measured lamp.",
 )
 @options.adapt()
@@ -192,7 +189,7 @@ def write_export(
     path = check_output(files[0], inputs=inputs, force=force)
     # Second files that exist are judged by their content.
     check_outputs(files, inputs=inputs, force=True)
-    content = import_part(source.reader)(name) if source.reader else None
+    content: Any = import_part(source.reader)(name) if source.reader else None
     if settings.pop("fill_missing", None):
         content = content.fill_missing()
     if names := settings.pop("paint", None):

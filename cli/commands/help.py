@@ -42,11 +42,11 @@ Temperatures such as 3200K are names too. From 4000K to 25000K they are CIE dayl
 this nominal temperature, as D65 is 6500K; below, from 1000K, black bodies.
 """
 DEFAULT_LIGHTS = """
-Without --light, 'relight', 'bounds' and 'advise' take A, FL11 and HP1, under which RGB
-goes wrong most. 'build' and 'diff' take the lights of ordinary scenes, D65, A, FL2,
-FL11 and LED-B3, and 'report' adds FL7, which builds do not use. 'compare' has a smooth
-set and a spiky one, 'wavelengths' the illuminant of sRGB, and 'query' none: errors cost
-time.
+Without --light, 'relight', 'advise' and 'lab bounds' take A, FL11 and HP1, under which
+RGB goes wrong most. 'build' and 'lab diff' take the lights of ordinary scenes, D65, A,
+FL2, FL11 and LED-B3, and 'report' adds FL7, which builds do not use. 'lab compare' has
+a smooth set and a spiky one, 'lab wavelengths' the illuminant of sRGB, and 'query'
+none: errors cost time.
 """
 LAMP_FILES = """
 The file of a measured lamp is a light as well: wavelengths in nm and powers of any unit

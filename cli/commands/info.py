@@ -43,9 +43,7 @@ OPTIONS = {
       uplift info macbeth-32.uplift --format json | jq .status
     """,
 )
-@click.argument(
-    "cube", metavar="[CUBE]", required=False, shell_complete=options.complete_cube
-)
+@click.argument("cube", metavar="[CUBE]", required=False, type=options.CUBE)
 @options.table_or_json
 def command(cube: str | None, style: str) -> None:
     from uplift.cube.file import summarise

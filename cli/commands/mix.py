@@ -1,4 +1,4 @@
-"""``uplift mix``: spectral mixtures of paints, dyes, filters and lights."""
+"""``uplift paints mix``: spectral mixtures of paints, dyes, filters and lights."""
 
 from __future__ import annotations
 
@@ -63,23 +63,23 @@ COAT = ("plate", "over", "plot_path")
 
     \b
     Examples:
-      uplift mix --pigment 2:'#005fa0' 1:'#ffd200'
-      uplift mix blue yellow --cube macbeth-32.uplift --plot ramp.png
-      uplift mix '#c8342a' --thickness 0.5 --ground '#f0e8d8' --format json
+      uplift paints mix --pigment 2:'#005fa0' 1:'#ffd200'
+      uplift paints mix blue yellow --cube macbeth-32.uplift --plot ramp.png
+      uplift paints mix '#c8342a' --thickness 0.5 --ground '#f0e8d8' --format json
       uplift paints fit swatches.csv -o paints.toml
-      uplift mix '3:lemon yellow' '1:deep blue' --paints paints.toml
+      uplift paints mix '3:lemon yellow' '1:deep blue' --paints paints.toml
     \f
 
     \b
     More examples:
-      uplift mix --dye '#d03060' 3:'#f0c000' --refractive-index 1.5 --thickness 2
-      uplift mix '#e8c070' --surface-reflectance 0.04 --internal-reflectance 0.6
-      uplift mix --dye '#d03060' --refractive-index 1.5 --plate transmitted
-      uplift mix --duntley 2:duntley.csv --thickness 0.5 --ground black
-      uplift mix --filter 2:'#ff8000' 1:0.5,0.5,0.5
-      uplift mix --additive '#ff0000' 0.5:'#00ff00'
-      uplift mix '#c8342a/#601810' --thickness 0.4 --over painting.exr -o coat.exr
-      uplift mix --theories '#005fa0' '#ffd200'
+      uplift paints mix --dye '#d03060' --refractive-index 1.5 --thickness 2
+      uplift paints mix '#ec7' --surface-reflectance .04 --internal-reflectance .6
+      uplift paints mix --dye '#d03060' --refractive-index 1.5 --plate transmitted
+      uplift paints mix --duntley 2:duntley.csv --thickness 0.5 --ground black
+      uplift paints mix --filter 2:'#ff8000' 1:0.5,0.5,0.5
+      uplift paints mix --additive '#ff0000' 0.5:'#00ff00'
+      uplift paints mix '#c43/#612' --thickness .4 --over painting.exr -o coat.exr
+      uplift paints mix --theories '#005fa0' '#ffd200'
     """,
 )
 @click.argument("words", metavar="[PARTS:]COLOUR...", nargs=-1, required=True)
@@ -186,7 +186,6 @@ def command(
 ) -> None:
     import numpy as np
 
-    from uplift.extras.paint.coats import Dyes
     from uplift.extras.paint.mixture import (
         SpectrumResolver,
         display_mixture,
@@ -236,9 +235,7 @@ def command(
 
     def coat(amounts: Sequence[float] | Array) -> Coat:
         law = _scattering_law(scattering, cube.data.sensor, further)
-        components = recipe.components(law)
-        if isinstance(components, Dyes) and plate is not None:
-            return components.plate(amounts, thickness, stated)
+        components = recipe.components(law, in_plate=plate is not None)
         return components.coat(amounts, thickness, stated)
 
     if over is not None and output is not None:

@@ -56,7 +56,7 @@ paint_names = options.repeatable(
     Examples:
       uplift paints fit swatches.csv -o paints.toml
       uplift paints match '#3e7d4b' --paints paints.toml
-      uplift mix '3:lemon yellow' '1:deep blue' --paints paints.toml
+      uplift paints mix '3:lemon yellow' '1:deep blue' --paints paints.toml
       uplift export paints.toml -o paints.html
     """,
 )

@@ -1,4 +1,4 @@
-"""``uplift palette``: design lights and materials for given colours."""
+"""``uplift lab palette``: design lights and materials for given colours."""
 
 from __future__ import annotations
 
@@ -46,11 +46,11 @@ LEGEND = "requested, obtained, factor model, ΔE00 of obtained/model; * designed
 
     \b
     Examples:
-      uplift palette metamers.toml
-      uplift palette metamers.toml --plot matrix.png --plot-spectra spectra.png
-      uplift palette metamers.toml -o designed.txt
-      uplift palette engine.toml --html engine.html
-      uplift palette vanish.toml --format json > vanish.json
+      uplift lab palette metamers.toml
+      uplift lab palette metamers.toml --plot m.png --plot-spectra s.png
+      uplift lab palette metamers.toml -o designed.txt
+      uplift lab palette engine.toml --html engine.html
+      uplift lab palette vanish.toml --format json > vanish.json
     """,
 )
 @click.argument("spec", metavar="SPEC.toml", type=click.Path())

@@ -38,7 +38,7 @@ decoding_options = options.stacked(
     click.option(
         "--space",
         default="sRGB",
-        shell_complete=options.complete_space,
+        type=options.SPACE,
         help="Linear RGB space of the result, such as ACEScg, or XYZ, or camera for "
         "the raw values of 'choose --camera'.",
     ),
@@ -52,7 +52,6 @@ decoding_options = options.stacked(
         "--white",
         metavar="NAME|FILE",
         type=options.LIGHT,
-        shell_complete=options.complete_light,
         help="Light whose white becomes (1, 1, 1). [default: D65, so that lights keep "
         "their colours]",
     ),

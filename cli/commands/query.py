@@ -74,7 +74,7 @@ if TYPE_CHECKING:
 
     Standard errors are those of materials like the entries of the cube's atlas. RGB
     does not identify a material: others of the same colour may differ by more, at most
-    as 'uplift bounds' states.
+    as 'uplift lab bounds' states.
 
     Lines of files and of standard input are answered in blocks as they come. An error
     in a later block follows the answers to earlier ones.

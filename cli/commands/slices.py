@@ -60,7 +60,7 @@ def command(cube: str, output: str | None, sheet: str | None, force: bool) -> No
     if output is None and sheet is None:
         output = f"{Path(cube).stem}.exr"
     from uplift.cube.file import read
-    from uplift.extras.images.exr import write_slices
+    from uplift.extras.images.slices import write_slices
     from uplift.extras.pages.sheet import write_sheet
     from uplift.lookup.cube import find_file
 

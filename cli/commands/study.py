@@ -1,4 +1,4 @@
-"""``uplift study``: measurements of models, solver and errors."""
+"""``uplift lab study``: measurements of models, solver and errors."""
 
 from collections.abc import Mapping, Sequence
 from functools import partial
@@ -49,11 +49,11 @@ HEADINGS = {
 
     \b
     Examples:
-      uplift study moments
-      uplift study moments --atlas paints.csv -o moments-paints --format json
-      uplift study held-out --atlas paints.csv
-      uplift study stability --quick
-      uplift study sensitivity macbeth-32.uplift
+      uplift lab study moments
+      uplift lab study moments --atlas paints.csv -o moments-paints --format json
+      uplift lab study held-out --atlas paints.csv
+      uplift lab study stability --quick
+      uplift lab study sensitivity macbeth-32.uplift
     """,
 )
 def command() -> None:
@@ -85,9 +85,9 @@ def _table(rows: Sequence[Row], *hidden: str, title: str = "") -> Table:
 
     \b
     Examples:
-      uplift study moments
-      uplift study moments --atlas macbeth --output moments --force
-      uplift study moments --format json
+      uplift lab study moments
+      uplift lab study moments --atlas macbeth --output moments --force
+      uplift lab study moments --format json
     """,
 )
 @options.atlas("Atlas", DEFAULT_ATLASES)
@@ -143,9 +143,9 @@ def moments(files: Sequence[str], output: str | None, style: str, force: bool) -
 
     \b
     Examples:
-      uplift study held-out --atlas paints.csv
-      uplift study held-out --atlas rawtoaces --coefficients 17
-      uplift study held-out --format json
+      uplift lab study held-out --atlas paints.csv
+      uplift lab study held-out --atlas rawtoaces --coefficients 17
+      uplift lab study held-out --format json
     """,
 )
 @options.atlas("Atlas", DEFAULT_ATLASES)
@@ -193,8 +193,8 @@ def held_out(files: Sequence[str], dim: int, coefficients: int, style: str) -> N
 
     \b
     Examples:
-      uplift study stability --quick --output out --force
-      uplift study stability --atlas paints.csv --format json
+      uplift lab study stability --quick --output out --force
+      uplift lab study stability --atlas paints.csv --format json
     """,
 )
 @options.flag("--quick", help="Small lattices and few values: some seconds per model.")
@@ -253,10 +253,10 @@ def stability(
 
     \b
     Examples:
-      uplift study sensitivity
-      uplift study sensitivity macbeth-32.uplift --output out --force
-      uplift study sensitivity --method otsu2018
-      uplift study sensitivity --entries 4 --format json
+      uplift lab study sensitivity
+      uplift lab study sensitivity macbeth-32.uplift --output out --force
+      uplift lab study sensitivity --method otsu2018
+      uplift lab study sensitivity --entries 4 --format json
     """,
 )
 @click.argument("cube", metavar="[CUBE]", required=False)

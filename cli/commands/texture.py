@@ -203,7 +203,6 @@ passes_option = click.option(
     "Add a channel with the standard error, ΔE00, under an illuminant, such as error.A",
     metavar="NAME|FILE",
     type=options.LIGHT,
-    shell_complete=options.complete_light,
 )
 @passes_option
 def command(

@@ -1,4 +1,4 @@
-"""``uplift wavelengths``: choose the wavelengths of a renderer."""
+"""``uplift lab wavelengths``: choose the wavelengths of a renderer."""
 
 from __future__ import annotations
 
@@ -39,12 +39,12 @@ if TYPE_CHECKING:
 
     \b
     Examples:
-      uplift wavelengths --count 8
-      uplift wavelengths --tolerance 1 --light D65 --light FL11 --plot chosen.png
-      uplift wavelengths --tolerance 0.5 --atlas paints.csv
-      uplift wavelengths --wavelengths 400:700:20 --light A --format csv
-      uplift wavelengths --count 4 --method meyer --light C --atlas macbeth
-      uplift wavelengths --orders 3 2 1 --light C --atlas macbeth
+      uplift lab wavelengths --count 8
+      uplift lab wavelengths --tolerance 1 --light D65 --light FL11 --plot w.png
+      uplift lab wavelengths --tolerance 0.5 --atlas paints.csv
+      uplift lab wavelengths --wavelengths 400:700:20 --light A --format csv
+      uplift lab wavelengths --count 4 --method meyer --light C --atlas macbeth
+      uplift lab wavelengths --orders 3 2 1 --light C --atlas macbeth
     """,
 )
 @options.whole("--count", metavar="N", help="Number of wavelengths, 1 to 40.")

@@ -14,17 +14,11 @@ import shutil
 import sys
 import textwrap
 from collections.abc import Iterable, Mapping, Sequence
-from itertools import chain
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import click
 
 from uplift.common.text import json_escapes, printable
-
-if TYPE_CHECKING:
-    from rich.text import Text
-
-    from .tables import SafeTable
 
 MIN_WIDTH = 40
 """Characters of a line, even where a window has fewer."""
@@ -100,12 +94,7 @@ def json_text(values: Any, indent: int | None = 2, *, ascii_only: bool = False) 
 
 def print_json(values: Any, indent: int | None = 2) -> None:
     """Print standard JSON, in the characters that standard output has."""
-    emit(json_output(values, indent))
-
-
-def json_output(values: Any, indent: int | None = None) -> str:
-    """Return standard JSON in the characters that standard output has."""
-    return json_text(values, indent, ascii_only=not _has_unicode())
+    emit(json_text(values, indent, ascii_only=not _has_unicode()))
 
 
 def json_row(values: Any) -> str:
@@ -113,7 +102,7 @@ def json_row(values: Any) -> str:
     times as fast.
     """
     if not _has_unicode():
-        return json_output(values)
+        return json_text(values, indent=None, ascii_only=True)
     from pydantic_core import to_json
 
     return json_escapes(to_json(values).decode())
@@ -123,93 +112,16 @@ def _has_unicode() -> bool:
     return (sys.stdout.encoding or "utf-8").lower().startswith("utf")
 
 
-def print_json_answers(blocks: Iterable[Iterable[str]], *, single: bool) -> None:
-    """Print an object, or an array of the objects of blocks, which are JSON texts, each
-    block before the next one is computed.
-    """
-    if single:
-        ((text,),) = blocks
-        emit(text)
-        return
-    before = "[\n"
-    for texts in blocks:
-        sys.stdout.write(before + ",\n".join(texts))
-        sys.stdout.flush()
-        before = ",\n"
-    emit("\n]")
-
-
-def print_csv(header: Sequence[object], rows: Iterable[Sequence[object]]) -> None:
-    """Print a table as CSV, each row before the next one is computed."""
+def print_csv(rows: Iterable[Sequence[object]]) -> None:
+    """Print rows as CSV, each before the next one is computed."""
     from uplift.extras.files.csv import write_csv
 
-    write_csv(_Lines(), chain([header], rows))
+    write_csv(EscapedOutput(), rows)
 
 
-def print_csv_text(text: str) -> None:
-    """Print CSV."""
-    _Lines().write(text)
-
-
-def csv_cell(text: str) -> str:
-    """Return a text as the cell of a row that `print_csv` prints."""
-    from uplift.extras.files.csv import csv_text
-
-    cell = csv_text(["", text], [])[1:-1]
-    return "\n".join(map(printable, cell.split("\n")))
-
-
-def print_lines(lines: Iterable[str]) -> None:
-    """Print lines of our own at once."""
-    sys.stdout.write("\n".join([*lines, ""]))
-
-
-class _Lines:
+class EscapedOutput:
     """Standard output with control characters escaped, but for the ends of lines."""
 
     def write(self, text: str) -> int:
+        """Write lines."""
         return sys.stdout.write("\n".join(map(printable, text.split("\n"))))
-
-
-def swatch(codes: Iterable[int]) -> Text:
-    """Return a cell with a background of 8-bit sRGB."""
-    from rich.text import Text
-
-    return Text("   ", style="on rgb({},{},{})".format(*codes))
-
-
-def make_table(
-    texts: Iterable[str] = (), numbers: Iterable[str] = (), **options: Any
-) -> SafeTable:
-    """Return a table of left-aligned texts followed by right-aligned numbers."""
-    from rich import box
-
-    from .tables import SafeTable
-
-    table = SafeTable(**{"box": box.SIMPLE_HEAD} | options)
-    for heading in texts:
-        table.add_column(heading, no_wrap=True)
-    for heading in numbers:
-        table.add_column(heading, justify="right", no_wrap=True)
-    return table
-
-
-def show(*tables: SafeTable) -> None:
-    """Print tables. Texts are wrapped between words; a table wider than the window is
-    divided by columns.
-    """
-    from rich.console import Console
-
-    from .tables import table_width
-
-    divided = chain.from_iterable(table.parts(window_width()) for table in tables)
-    for number, table in enumerate(divided):
-        if number:
-            say()
-        width = max(window_width(), table_width(table.columns))
-        body = list(table.take_body())
-        Console(
-            file=sys.stdout, width=width, highlight=False, markup=False, emoji=False
-        ).print(table)
-        if body:
-            emit("\n".join(body))

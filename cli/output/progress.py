@@ -19,19 +19,13 @@ INTERVAL = 10.0
 
 
 @contextlib.contextmanager
-def progress_bar(
-    title: str = "", *, quiet: bool = False, verbose: bool = False
-) -> Iterator[ProgressCallback]:
-    """Yield a callback for events, titled ``title`` or by their stages: all lines if
-    ``verbose``, none if ``quiet``.
+def progress_bar(title: str = "", *, quiet: bool = False) -> Iterator[ProgressCallback]:
+    """Yield a callback for events, titled ``title`` or by their stages, which prints
+    nothing if ``quiet``.
     """
 
     def describe(event: Progress) -> str:
         return title or STAGES.get(event.stage, event.stage)
-
-    def print_line(event: Progress) -> None:
-        detail = f", {event.detail}" if event.detail else ""
-        say(f"{describe(event)}: {event.done} of {event.total}{detail}", err=True)
 
     last = time.monotonic()
 
@@ -39,14 +33,15 @@ def progress_bar(
         nonlocal last
         if time.monotonic() - last >= INTERVAL:
             last = time.monotonic()
-            print_line(event)
+            detail = f", {event.detail}" if event.detail else ""
+            say(f"{describe(event)}: {event.done} of {event.total}{detail}", err=True)
 
     is_animated = sys.stderr.isatty() and os.environ.get("TERM", "dumb") not in (
         "dumb",
         "unknown",
     )
-    if verbose or quiet or not is_animated:
-        yield print_line if verbose else ignore_progress if quiet else print_sometimes
+    if quiet or not is_animated:
+        yield ignore_progress if quiet else print_sometimes
         return
     from rich.console import Console
     from rich.progress import (

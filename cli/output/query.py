@@ -7,6 +7,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from itertools import chain, repeat
 from math import isnan
+from operator import attrgetter
 from typing import TYPE_CHECKING, Any
 
 from uplift.common.text import printable
@@ -19,7 +20,7 @@ from .answers import (
     print_spectrum,
     without_rounding,
 )
-from .console import has_colours, print_csv, print_csv_text, print_lines, say
+from .console import EscapedOutput, emit, has_colours, print_csv, say
 from .table import print_json_rows
 
 if TYPE_CHECKING:
@@ -46,6 +47,7 @@ def answer_rows(answers: Answers, block: QueryBlock) -> list[dict[str, Any]]:
     from uplift.extras.colour.srgb import hex_codes as srgb_codes
 
     count = len(block)
+    label = attrgetter("label")
     lights = {}
     for lit, display in zip(answers.lights, answers.displays, strict=True):
         xyz = block.light_xyz[lit.name]
@@ -70,7 +72,7 @@ def answer_rows(answers: Answers, block: QueryBlock) -> list[dict[str, Any]]:
         **coordinates(answers.cube, block.rgb),
         "round_trip": _rows(round_trip, count),
         "cell": block.cell.tolist(),
-        "status": [[status.label for status in row] for row in block.statuses],
+        "status": [list(map(label, statuses)) for statuses in block.statuses],
         "realisable": block.realisable.tolist(),
         "entry": block.entry,
         "standard_error": _known(block.errors[:, 0]),
@@ -136,7 +138,8 @@ def _print_csv(answers: Answers, blocks: Iterable[QueryBlock]) -> None:
     for light in known:
         names += [f"standard_error_{light}", f"error_bound_{light}"]
     names += [f"hex_{light}" for light in lights]
-    print_csv([*names, "entry", *map("{:g}".format, wavelengths)], [])
+    print_csv([[*names, "entry", *map("{:g}".format, wavelengths)]])
+    output = EscapedOutput()
     for block in blocks:
         spectra = number_rows(without_rounding(block.reflectance))
         for row, spectrum in zip(answer_rows(answers, block), spectra, strict=True):
@@ -147,7 +150,7 @@ def _print_csv(answers: Answers, blocks: Iterable[QueryBlock]) -> None:
                 cells += [values.get(light) for values in errors]
             cells += [lit["hex"] for lit in row["lights"].values()]
             text = csv_text([*cells, row["entry"]], [])
-            print_csv_text(f"{text[:-1]},{spectrum}\n")
+            output.write(f"{text[:-1]},{spectrum}\n")
 
 
 def _print_lines(answers: Answers, blocks: Iterable[QueryBlock]) -> None:
@@ -164,7 +167,8 @@ def _print_lines(answers: Answers, blocks: Iterable[QueryBlock]) -> None:
                 f"{indent}hex      {'linear RGB':<17}  {'ΔE00':<7}  {middle}  atlas "
                 "entry"
             )
-        print_lines(_lines(cube, block, rows, names))
+        for line in _lines(cube, block, rows, names):
+            emit(line)
 
 
 def _lines(

@@ -14,7 +14,6 @@ from uplift.common.text import printable
 from .console import (
     emit,
     has_colours,
-    json_output,
     json_row,
     paragraph,
     print_csv,
@@ -49,7 +48,7 @@ class Table:
     headings: Mapping[str, str] = field(default_factory=dict)
     title: str = ""
     digits: str = ".3f"
-    formats: Mapping[str, Format] = field(default_factory=dict)
+    formats: Mapping[str, Any] = field(default_factory=dict)
 
     def print_csv(self) -> None:
         """Print CSV, each row before the next one is computed."""
@@ -57,7 +56,7 @@ class Table:
         first = next(rows, None)
         if first is not None:
             cells = (list(row.values()) for row in chain([first], rows))
-            print_csv(list(first), cells)
+            print_csv(chain([list(first)], cells))
 
     def print_text(self) -> None:
         """Print a table as wide as the window at most, unless its numbers and words are
@@ -163,7 +162,8 @@ def print_json_rows(rows: Iterable[Row], *, single: bool) -> None:
     next one is computed.
     """
     if single:
-        emit(*map(json_output, rows))
+        (row,) = rows
+        print_json(row, indent=None)
         return
     before = "[\n"
     for row in rows:

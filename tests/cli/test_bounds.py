@@ -1,4 +1,4 @@
-"""``uplift bounds``."""
+"""``uplift lab bounds``."""
 
 import csv
 import io
@@ -16,7 +16,7 @@ LIGHTS = ("--light", "A", "--light", "FL11")
 
 
 def test_bounds_of_a_colour_in_json(ask):
-    found = ask("bounds #8a2a20", *LIGHTS)
+    found = ask("lab bounds #8a2a20", *LIGHTS)
     assert list(found["bounds"]) == ["A", "FL11"]
     for name, each in found["bounds"].items():
         least, most = np.array(each["lab_range"])
@@ -32,7 +32,9 @@ def test_bounds_of_a_colour_in_json(ask):
 
 
 def test_the_likely_difference_is_the_error_bound_in_all_formats(run, ask, cubes):
-    colour = f"bounds --cube {cubes}/moments-16-macbeth.uplift 0.2 0.3 0.1 --light FL11"
+    colour = (
+        f"lab bounds --cube {cubes}/moments-16-macbeth.uplift 0.2 0.3 0.1 --light FL11"
+    )
     found = ask(colour)
     bound = found["error_bounds"]["FL11"]
     assert bound > found["standard_errors"]["FL11"]
@@ -48,7 +50,7 @@ def test_expected_errors_are_possible(ask, cube):
     """Few reflectances have the colours of the ends of the space."""
     colours = "#000000 #ffffff #00ffff #ffff00 #ff00ff #fefefe #010203 #f0ffff #888888"
     words = f"--cube {cube} --input-space sRGB --out-of-gamut clip"
-    found = ask("bounds", *colours.split(), *words.split(), *LIGHTS)
+    found = ask("lab bounds", *colours.split(), *words.split(), *LIGHTS)
     queried = ask("query", *colours.split(), *words.split(), *LIGHTS)
     for answer, query in zip(found, queried, strict=True):
         for name, bounds in answer["bounds"].items():
@@ -67,7 +69,7 @@ def largest_of(answer, light):
 def test_table_plot_and_page(run, home):
     # A light counts once.
     words = "--light D65 --light d65 --plot bounds.png --html page.html"
-    text = run(f"bounds 0.2,0.3,0.4 {words}").stdout
+    text = run(f"lab bounds 0.2,0.3,0.4 {words}").stdout
     row = text.splitlines()[-1].split()
     assert (row[0], float(row[5])) == ("D65", 0)  # metamers match under the build light
     assert max(map(len, text.splitlines())) <= 80
@@ -76,14 +78,14 @@ def test_table_plot_and_page(run, home):
 
 
 def test_bad_input_is_refused(refuse, misuse, home):
-    assert refuse("bounds --xyz 1 0.1 0.02").code == "colour-unrealisable"
-    assert "one colour" in misuse("bounds - --html p.html", input=COLOURS)
+    assert refuse("lab bounds --xyz 1 0.1 0.02").code == "colour-unrealisable"
+    assert "one colour" in misuse("lab bounds - --html p.html", input=COLOURS)
     (home / "look.html").write_text("mine")
-    assert refuse("bounds #8a2a20 --html look.html").code == "file-exists"
+    assert refuse("lab bounds #8a2a20 --html look.html").code == "file-exists"
 
 
 def test_a_further_colour_cuts_the_bounds(run, ask, cubes, home):
-    colour = f"bounds #8a2a20 --cube {cubes}/moments-16-macbeth.uplift --light FL11"
+    colour = f"lab bounds #8a2a20 --cube {cubes}/moments-16-macbeth.uplift --light FL11"
     found = ask(f"{colour} --also A:#9a3020")
     assert found["bounds"] == ask(colour)["bounds"]
     whole = found["bounds"]["FL11"]
@@ -109,9 +111,9 @@ def test_a_further_colour_cuts_the_bounds(run, ask, cubes, home):
 
 
 def test_further_colours_that_do_not_fit_are_refused(refuse, misuse, home):
-    colour = "bounds #8a2a20 --light FL11 --also"
+    colour = "lab bounds #8a2a20 --light FL11 --also"
     assert refuse(f"{colour} A:#a03020").code == "colour-unrealisable"
-    assert refuse("bounds 1.2 0.1 0.1 --also A:#9a3020").code == "rgb-out-of-gamut"
-    assert "one colour" in misuse("bounds - --also A:#9a3020", input=COLOURS)
+    assert refuse("lab bounds 1.2 0.1 0.1 --also A:#9a3020").code == "rgb-out-of-gamut"
+    assert "one colour" in misuse("lab bounds - --also A:#9a3020", input=COLOURS)
     for words in ("--format csv", "--html p.html"):
         assert "--also" in misuse(f"{colour} A:#9a3020 {words}")

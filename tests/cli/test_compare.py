@@ -1,4 +1,4 @@
-"""``uplift compare``."""
+"""``uplift lab compare``."""
 
 import csv
 import json
@@ -33,7 +33,16 @@ def quick(repository, tmp_path_factory):
         for name, value in ONE_THREAD.items():
             patch.setenv(name, value)
         atlas = str(repository / "atlases" / "macbeth.txt")
-        words = ["compare", "--quick", "--filters", "--atlas", atlas, "-o", "out"]
+        words = [
+            "lab",
+            "compare",
+            "--quick",
+            "--filters",
+            "--atlas",
+            atlas,
+            "-o",
+            "out",
+        ]
         result = CliRunner().invoke(main, words, catch_exceptions=False)
     assert result.exit_code == 0, result.output
     return folder / "out", result
@@ -60,7 +69,7 @@ def test_all_files_are_written_and_tables_printed(quick):
 
 
 def test_target_prints_the_cheapest_for_each_set_of_lights(run, macbeth):
-    words = f"compare --quick --atlas {macbeth} --tolerance"
+    words = f"lab compare --quick --atlas {macbeth} --tolerance"
     near = run(f"{words} 1.0 --filters").stdout.splitlines()
     assert [line.split(" lights")[0] for line in near] == ["smooth", "spiky"]
     assert all(
@@ -71,7 +80,7 @@ def test_target_prints_the_cheapest_for_each_set_of_lights(run, macbeth):
 
 
 def test_lights_replace_the_default_sets(run, macbeth):
-    words = ["compare", "--quick", "--atlas", macbeth, *GIVEN, "--format"]
+    words = ["lab", "compare", "--quick", "--atlas", macbeth, *GIVEN, "--format"]
     fields = json.loads(run(*words, "json").stdout)
     rows = list(csv.DictReader(run(*words, "csv").stdout.splitlines()))
     names = {
@@ -86,7 +95,7 @@ def test_lights_replace_the_default_sets(run, macbeth):
 
 
 def test_written_spectra_are_an_atlas_and_lamps(run, misuse, home, macbeth):
-    words = f"compare --atlas {macbeth} --light FL11 --light A --write RS16"
+    words = f"lab compare --atlas {macbeth} --light FL11 --light A --write RS16"
     assert run(f"{words} -o out").stdout == "out: 24 surfaces and 2 lights as RS16\n"
     assert read_atlas("out/surfaces.csv").names == read_atlas(macbeth).names
     assert read_lamps("out/lights.csv").names == ("FL11", "A")

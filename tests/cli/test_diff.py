@@ -1,4 +1,4 @@
-"""``uplift diff``."""
+"""``uplift lab diff``."""
 
 import json
 

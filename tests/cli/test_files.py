@@ -58,8 +58,8 @@ NAMED = {
 WRITTEN = """
 advise image.exr wood.*.exr --cube cube.uplift --light lamp.csv | --plot x.png | x.png
 atlas atlas.txt library.txt | -o x.txt | x.txt
-bounds --cube cube.uplift --input colours.csv | --plot x.pdf | x.pdf
-bounds --cube cube.uplift --input colours.csv | --html x.html | x.html
+lab bounds --cube cube.uplift --input colours.csv | --plot x.pdf | x.pdf
+lab bounds --cube cube.uplift --input colours.csv | --html x.html | x.html
 build --atlas atlas.txt --library library.txt --look looks.toml --observer camera.csv \
 | -o x.uplift | x.uplift
 build --atlas atlas.txt --library library.txt --scene image.exr --light lamp.csv \
@@ -68,10 +68,10 @@ build --plan plan.json | -o x.uplift | x.uplift
 build --plan plan.json | | plan.uplift
 chart --from chart.csv --atlas atlas.txt \
 | -o out | out/chart.csv out/chart.png out/chart.html
-compare --atlas atlas.txt --atlas library.txt \
+lab compare --atlas atlas.txt --atlas library.txt \
 | -o out | out/compare-boxes.png out/compare-cost.png out/compare.html
-compare --atlas atlas.txt --write PF16 | -o out | out/surfaces.csv out/lights.csv
-diff cube.uplift cube2.uplift image.exr wood.*.exr | -o x.html | x.html
+lab compare --atlas atlas.txt --write PF16 | -o out | out/surfaces.csv out/lights.csv
+lab diff cube.uplift cube2.uplift image.exr wood.*.exr | -o x.html | x.html
 export cube.uplift | -o x.npz | x.npz
 export cube.uplift --light lamp.csv | -o x.cube | x.cube
 export paints.toml | -o x.h | x.h
@@ -81,20 +81,21 @@ lights export lights.uplift | -o x.h | x.h
 lights info lights.uplift | --plot x.svg | x.svg
 lights query --lights lights.uplift --input colours.csv | --plot x.png | x.png
 lights texture image.exr --lights lights.uplift | -o x.exr | x.exr
-mix #c8342a --atlas atlas.txt --cube cube.uplift | --plot x.png | x.png
-mix --duntley 2:paint.csv --cube cube.uplift | --plot x.png | x.png
-mix #c8342a --over image.exr --cube cube.uplift | -o x.exr | x.exr
-mix white --paints paints.toml --cube cube.uplift | --plot x.png | x.png
-mix white --paints paints.toml --over image.exr --cube cube.uplift | -o x.exr | x.exr
+paints mix #c8342a --atlas atlas.txt --cube cube.uplift | --plot x.png | x.png
+paints mix --duntley 2:paint.csv --cube cube.uplift | --plot x.png | x.png
+paints mix #c8342a --over image.exr --cube cube.uplift | -o x.exr | x.exr
+paints mix white --paints paints.toml --cube cube.uplift | --plot x.png | x.png
+paints mix white --paints paints.toml --over image.exr --cube cube.uplift \
+| -o x.exr | x.exr
 paints fit samples.csv --recipes recipes.csv | -o x.toml | x.toml
 paints match #c8342a --paints paints.toml --atlas atlas.txt --cube cube.uplift \
 | --plot x.png | x.png
 paints match --spectrum atlas.txt --paints paints.toml | --plot x.png | x.png
 export paints.toml | -o x.h | x.h
-palette palette.toml | -o x.txt | x.txt
-palette palette.toml | --plot x.png | x.png
-palette palette.toml | --plot-spectra x.png | x.png
-palette palette.toml --image image.exr | --html x.html | x.html
+lab palette palette.toml | -o x.txt | x.txt
+lab palette palette.toml | --plot x.png | x.png
+lab palette palette.toml | --plot-spectra x.png | x.png
+lab palette palette.toml --image image.exr | --html x.html | x.html
 passes choose image.exr --atlas atlas.txt --cube cube.uplift --light lamp.csv \
 | -o x.toml | x.toml
 passes decode wood.1.exr wood.2.exr --passes passes.toml | -o x.exr | x.exr
@@ -108,15 +109,15 @@ report recorded.uplift | -o x.html | x.html
 report cube2.uplift --atlas atlas.txt --light lamp.csv | | cube2.html
 slices cube.uplift | -o x.exr | x.exr
 slices cube.uplift | --plot x.png | x.png
-study moments --atlas atlas.txt | -o out | out/moments.png out/moments-patches.png
-study stability --atlas atlas.txt | -o out | out/stability.png
-study sensitivity recorded.uplift | -o out | out/sensitivity-locality.png
+lab study moments --atlas atlas.txt | -o out | out/moments.png out/moments-patches.png
+lab study stability --atlas atlas.txt | -o out | out/stability.png
+lab study sensitivity recorded.uplift | -o out | out/sensitivity-locality.png
 texture image.exr --cube cube.uplift --cube cube2.uplift --mask mask.exr \
 | -o x.exr | x.exr
 texture image.exr wood.*.exr --errors lamp.csv | -o out | out/image.exr out/wood.2.exr
 texture image.exr --passes passes.toml | -o x | x.1.exr x.2.exr
 lights texture image.exr --passes passes.toml | -o x | x.1.exr x.2.exr
-wavelengths --count 4 --atlas atlas.txt --observer camera.csv --light lamp.csv \
+lab wavelengths --count 4 --atlas atlas.txt --observer camera.csv --light lamp.csv \
 | --plot x.png | x.png
 """
 """Commands with all their inputs | the outputs that are added | the files that these
@@ -188,7 +189,7 @@ def test_every_output_of_every_command_has_a_row():
 @pytest.mark.parametrize(
     "words",
     [
-        "palette palette.toml --plot new.png --plot-spectra old.png",
+        "lab palette palette.toml --plot new.png --plot-spectra old.png",
         "slices cube.uplift -o new.exr --plot old.png",
         "texture image.exr mask.exr -o out",
     ],
@@ -205,7 +206,7 @@ def test_nothing_is_written_if_one_output_exists(refuse, home, inputs, words):
 
 
 def test_outputs_differ(refuse, inputs):
-    words = "palette palette.toml --plot a.png --plot-spectra ./a.png --force"
+    words = "lab palette palette.toml --plot a.png --plot-spectra ./a.png --force"
     assert refuse(words).code == "output"
 
 

@@ -98,6 +98,7 @@ def test_textures(run, home):
 def test_programs(run, misuse, home):
     assert run("lights export -o lights.h").output.startswith("lights.h: ")
     assert "lights_power" in (home / "lights.h").read_text()
+    assert "in b.bin" in run("lights export -o b.h --table file").output
     assert ".glsl" in misuse("lights export -o lights.wgsl")
 
 
@@ -113,7 +114,7 @@ def test_no_output_replaces_the_table(refuse, home, words):
     [
         "query 1 1 1 --cube lights.uplift",
         "texture in.png -o out.exr --cube lights.uplift",
-        "study sensitivity lights.uplift",
+        "lab study sensitivity lights.uplift",
     ],
 )
 def test_commands_that_need_a_cube_name_the_commands_of_lights(refuse, home, words):

@@ -411,12 +411,12 @@ def test_rows_are_csv_with_a_column_for_each_number(capsys):
     "command",
     [
         "atlas macbeth",
-        "bounds #8a2a20",
+        "lab bounds #8a2a20",
         "check moments-8-macbeth.uplift",
-        "diff moments-8.uplift sigmoid-8.uplift",
+        "lab diff moments-8.uplift sigmoid-8.uplift",
         "info moments-8-macbeth.uplift",
         "lights info",
-        "palette metamers.toml",
+        "lab palette metamers.toml",
         "query #da7b2a",
     ],
 )
@@ -445,7 +445,6 @@ def test_progress_off_terminals_is_a_line_now_and_then(monkeypatch, capsys):
         ({"title": "rows"}, ["rows: 3 of 8, round 2"]),
         ({}, ["fitting: 3 of 8, round 2"]),
         ({"quiet": True}, []),
-        ({"verbose": True}, ["fitting: 3 of 8, round 2"] * 4),
     ):
         with progress_bar(**options) as report:
             for _ in range(4):

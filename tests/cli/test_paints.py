@@ -1,4 +1,4 @@
-"""``uplift paints``, and measured paints in ``uplift mix`` and ``uplift export``."""
+"""``uplift paints``, and measured paints in mixtures and exports."""
 
 import json
 import subprocess
@@ -163,7 +163,7 @@ def test_colours_out_of_reach_are_stated(run, paints):
 def test_info_shows_what_the_file_has(run, ask, paints):
     answer = ask("paints info paints.toml")
     assert answer["wavelengths"] == paints.wavelengths.tolist()
-    mixtures = [ask(f"mix {name} --paints paints.toml") for name in paints.names]
+    mixtures = [ask(f"paints mix {name} --paints paints.toml") for name in paints.names]
     for row, paint in enumerate(answer["paints"]):
         assert paint["name"] == paints.names[row]
         assert paint["colour"] == mixtures[row]["hex"]
@@ -177,7 +177,7 @@ def test_info_shows_what_the_file_has(run, ask, paints):
 
 def test_mix_has_the_spectra_of_the_library(ask, paints):
     finer = paints.at(np.arange(400.0, 701, 20))
-    words = "mix 3:white 1:blue --paints paints.toml --wavelengths 400:700:20"
+    words = "paints mix 3:white 1:blue --paints paints.toml --wavelengths 400:700:20"
     assert_allclose(ask(words)["spectrum"], finer.reflectance([3, 0, 0, 1]), atol=1e-5)
     film = ask(f"{words} --thickness 0.5 --ground black")
     expected = finer.reflectance([3, 0, 0, 1], 0.5, 0.0)
@@ -191,7 +191,7 @@ def test_mix_has_the_spectra_of_the_library(ask, paints):
 def test_measured_paint_over_an_image(run, paints, home, cubes):
     rgb = np.full((2, 3, 3), 0.5, np.float32)
     write_exr(home / "in.exr", planes(rgb))
-    words = "mix red --paints paints.toml --over in.exr -o out.exr --thickness 1"
+    words = "paints mix red --paints paints.toml --over in.exr -o out.exr --thickness 1"
     assert "6 pixels" in run(words).stdout
     painted = channels(home / "out.exr")
     assert painted["R"].mean() > 2 * painted["B"].mean()
@@ -235,11 +235,11 @@ def test_a_table_of_two(run, refuse, paints, home):
         ("option", "paints match #888 --paints paints.toml --thickness -1"),
         ("file-not-found", "paints match --spectrum none.csv --paints paints.toml"),
         ("invalid-file", "paints info negative.csv"),
-        ("unknown-name", "mix green --paints paints.toml"),
-        ("option", "mix 0:red --paints paints.toml"),
-        ("option", "mix -1:red --paints paints.toml"),
-        ("option", "mix red --paints paints.toml --thickness -1"),
-        ("file-not-found", "mix red --paints none.toml"),
+        ("unknown-name", "paints mix green --paints paints.toml"),
+        ("option", "paints mix 0:red --paints paints.toml"),
+        ("option", "paints mix -1:red --paints paints.toml"),
+        ("option", "paints mix red --paints paints.toml --thickness -1"),
+        ("file-not-found", "paints mix red --paints none.toml"),
         ("unknown-name", "export paints.toml -o a.h --paint green"),
         ("invalid-file", "export broken.toml -o a.h"),
     ],
@@ -266,11 +266,11 @@ def test_bad_input(refuse, paints, home, code, words):
         "paints match #888 --paints paints.toml --parts 0",
         "paints fit a.csv --surface-reflectance 0.04",
         "paints fit a.csv --internal-reflectance 0.6",
-        "mix red --paints paints.toml --dye",
-        "mix red --paints paints.toml --theories",
-        "mix red --paints paints.toml --scattering root",
-        "mix red --paints paints.toml --atlas macbeth",
-        "mix red --paints paints.toml --plate reflected",
+        "paints mix red --paints paints.toml --dye",
+        "paints mix red --paints paints.toml --theories",
+        "paints mix red --paints paints.toml --scattering root",
+        "paints mix red --paints paints.toml --atlas macbeth",
+        "paints mix red --paints paints.toml --plate reflected",
         "export paints.toml",
         "export paints.toml -o a.npz",
         "export paints.toml -o a.h --fill-missing",

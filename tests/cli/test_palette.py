@@ -1,4 +1,4 @@
-"""``uplift palette``."""
+"""``uplift lab palette``."""
 
 import matplotlib.image
 import numpy as np
@@ -43,7 +43,7 @@ def pair(home):
 
 def test_the_matrix_and_goals_that_cannot_be_met_are_printed(run, spec, home):
     """A material cannot be brighter than the perfect reflector."""
-    text = run("palette", spec()).stdout
+    text = run("lab palette", spec()).stdout
     assert "#a06040 #a06040" in text
     assert "new*" in text
     assert "not met" not in text
@@ -53,14 +53,14 @@ def test_the_matrix_and_goals_that_cannot_be_met_are_printed(run, spec, home):
     )
     (line,) = [
         line
-        for line in run("palette", path).stdout.splitlines()
+        for line in run("lab palette", path).stdout.splitlines()
         if line.startswith("not met: ")
     ]
     assert all(word in line for word in ("new", "day", "ΔE00"))
 
 
 def test_json_reproduces_the_matrix(ask, spec):
-    found = ask("palette", spec())
+    found = ask("lab palette", spec())
     assert [part["designed"] for part in found["materials"]] == [False, True]
     light = found["lights"][0]
     material = found["materials"][1]
@@ -78,20 +78,22 @@ def test_json_reproduces_the_matrix(ask, spec):
 
 def test_files_are_written(run, refuse, spec, home):
     files = "-o new.txt --plot m.png --plot-spectra s.png"
-    assert "new.txt: 1 designed material\n" in run(f"palette {spec()} {files}").stderr
+    assert (
+        "new.txt: 1 designed material\n" in run(f"lab palette {spec()} {files}").stderr
+    )
     assert uplift.read_atlas("new.txt").names == ("new",)
     assert all((home / name).read_bytes()[1:4] == b"PNG" for name in ("m.png", "s.png"))
-    assert refuse("palette --plot m.png", spec()).code == "file-exists"
-    run("palette --plot m.png --force", spec())
+    assert refuse("lab palette --plot m.png", spec()).code == "file-exists"
+    run("lab palette --plot m.png --force", spec())
 
 
 def test_pages(run, pair, home):
-    assert run("palette --html two.html", pair).stderr.startswith("two.html: ")
+    assert run("lab palette --html two.html", pair).stderr.startswith("two.html: ")
     text = (home / "two.html").read_text("utf-8")
     assert 'width="512" height="512"' in text
     assert ">old brick</button>" in text
     labels = "--label leaf=#ff0000 --label 'old brick=#0000ff'"
-    run(f"palette {pair} --html three.html --image labels.png {labels}")
+    run(f"lab palette {pair} --html three.html --image labels.png {labels}")
     assert 'width="3" height="1"' in (home / "three.html").read_text("utf-8")
 
 
@@ -113,9 +115,9 @@ def test_invalid_input_is_reported_before_any_work(
     monkeypatch.setattr(
         "uplift.extras.papers.palette.design", lambda *_: pytest.fail("designed")
     )
-    assert refuse(f"palette {pair} {arguments}").code == code
+    assert refuse(f"lab palette {pair} {arguments}").code == code
     assert not (home / "a.html").exists()
-    assert refuse("palette none.toml").code == "file-not-found"
+    assert refuse("lab palette none.toml").code == "file-not-found"
 
 
 @pytest.mark.parametrize(
@@ -123,4 +125,4 @@ def test_invalid_input_is_reported_before_any_work(
     ["--image labels.png", "--html a.html --label leaf=#ff0000"],
 )
 def test_options_that_need_others(misuse, pair, arguments):
-    misuse(f"palette {pair} {arguments}")
+    misuse(f"lab palette {pair} {arguments}")

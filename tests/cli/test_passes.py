@@ -57,11 +57,6 @@ def test_choose_is_checked(misuse, words):
     assert words.split()[0] in misuse(f"passes choose {words}")
 
 
-def test_choose_keeps_files(refuse, home):
-    (home / "passes.toml").write_text("kept")
-    assert refuse("passes choose --count 1").code == "file-exists"
-
-
 def test_a_cube_needs_images(misuse):
     assert "--cube" in misuse("passes choose --cube ACEScg")
 
@@ -154,10 +149,8 @@ def test_sequences(run, refuse, passes, home):
     ("words", "code"),
     [
         ("a.1.exr -o a.exr", "passes-missing"),
-        ("a.2.exr a.1.exr -o a.exr", "passes-out-of-order"),
         ("a.1.exr a.2.exr -o a.png", "option"),
         ("a.1.exr a.2.exr -o a.1.exr --force", "output-is-input"),
-        ("a.1.exr missing.exr -o a.exr", "file-not-found"),
         ("a.1.exr a.2.exr -o a.exr --light FL2", "unknown-name"),
         ("a.1.exr a.2.exr -o a.exr --space sRBG", "unknown-name"),
     ],
@@ -166,13 +159,6 @@ def test_decode_refuses(refuse, passes, home, words, code):
     for number in (1, 2):
         write(home / f"a.{number}.exr", np.full((2, 3, 3), 0.1, np.float32))
     assert refuse(f"passes decode --passes passes.toml {words}").code == code
-
-
-def test_other_files_are_refused(refuse, home):
-    (home / "a.toml").write_text("a = 1")
-    assert refuse("passes info a.toml").code == "invalid-file"
-    assert refuse("passes recipe missing.toml").code == "file-not-found"
-    assert refuse("query 1 1 1 --passes a.toml").code == "invalid-file"
 
 
 @pytest.mark.parametrize("tool", ["text", "nuke", "blender"])

@@ -4,6 +4,7 @@ import json
 
 import numpy as np
 import pytest
+from uplift_cli.output import progress
 
 from tests.extras.texture.conftest import planes, write_exr
 from tests.helpers import near_black, with_absent_points
@@ -22,11 +23,14 @@ def scene(home, small_cube):
     return home / "dark.uplift"
 
 
-def test_summary_counts_nodes_and_default_name_has_scene(run, ask, home, macbeth):
+def test_summary_counts_nodes_and_default_name_has_scene(
+    run, ask, home, macbeth, monkeypatch
+):
+    monkeypatch.setattr(progress, "INTERVAL", 0)
     for name, value in (("a.exr", 0.1), ("b.1.exr", 0.2), ("b.2.exr", 0.9)):
         write_exr(home / name, planes(np.full((4, 4, 3), value, np.float32)))
     result = run(
-        "build --dim 8 --scene a.exr --scene b.*.exr -v --atlas",
+        "build --dim 8 --scene a.exr --scene b.*.exr --atlas",
         macbeth,
     )
     data = read(home / "macbeth-8-scene.uplift")

@@ -26,22 +26,22 @@ COMPUTES = {
     "build": "uplift.pipeline.entries.fit_constraints",
     "chart": "uplift.lab.chart.measure.measure_methods",
     "check": "uplift.extras.report.rebuild.rebuild",
-    "compare": "uplift.extras.papers.representations.compare.error_statistics",
-    "diff": "uplift.extras.report.diff.diff_cubes",
+    "lab compare": "uplift.extras.papers.representations.compare.error_statistics",
+    "lab diff": "uplift.extras.report.diff.diff_cubes",
     "lights build": "uplift.extras.emission.build.EmissionTable",
     "paints fit": "uplift.extras.paint.fit_paints",
     "paints match": "uplift.extras.paint.match",
-    "palette": "uplift.extras.papers.palette.design",
+    "lab palette": "uplift.extras.papers.palette.design",
     "passes choose": "uplift.extras.scene.passes.choice.draw_paths",
-    "plan": "uplift.extras.scene.plan.space.sample_colours",
+    "plan": "uplift.extras.scene.plan.trial.sample_colours",
     "relight": "uplift.pipeline.entries.fit_constraints",
     "report": "uplift.extras.report.assessment.assess",
-    "study held-out": "uplift.pipeline.entries.fit_constraints",
-    "study moments": "uplift.lab.study.moments.Technique.moments",
-    "study sensitivity": "uplift.lab.study.sensitivity.perturb_answers",
-    "study stability": "uplift.lab.study.stability.study_stability",
+    "lab study held-out": "uplift.pipeline.entries.fit_constraints",
+    "lab study moments": "uplift.lab.study.moments.Technique.moments",
+    "lab study sensitivity": "uplift.lab.study.sensitivity.perturb_answers",
+    "lab study stability": "uplift.lab.study.stability.study_stability",
     "texture": "uplift.extras.texture.sequence.convert",
-    "wavelengths": "uplift.extras.papers.wavelengths.sampling.evaluate",
+    "lab wavelengths": "uplift.extras.papers.wavelengths.sampling.evaluate",
 }
 """Functions that do the long work of commands, and must not be called."""
 INVALID = """
@@ -56,8 +56,8 @@ unknown-name atlas macbeth --illuminant none
 atlas atlas macbeth --illuminant mine
 unknown-name atlas macbeth --observer mine
 file-not-found atlas macbeth --space camera --observer none.json
-unknown-name bounds #888 --html x.html --plot x.png --light none
-colour bounds --input none.csv --plot x.png
+unknown-name lab bounds #888 --html x.html --plot x.png --light none
+colour lab bounds --input none.csv --plot x.png
 output build --dim 2 -o none/cube
 output build --dim 2 -o .
 file-exists build --dim 2 -o mine
@@ -93,20 +93,20 @@ file-not-found chart --atlas macbeth --atlas none.csv
 option chart --method none
 file-not-found chart --from none.csv
 option chart --recommend --light none
-unknown-name compare --atlas macbeth --light F2
-option compare --atlas macbeth --write GQ16 -o new
-output compare --atlas macbeth --write PS16 -o mine
-output compare --atlas macbeth -o mine
-file-exists compare --atlas macbeth -o taken
-file-not-found compare -o out --atlas macbeth --atlas none.csv
-unknown-name compare -o out --light none
-option compare -o out --tolerance 0
-option compare -o out --write none
-file-not-found compare -o out --write PF16 --atlas none.csv
-file-not-found diff {} none.uplift
-file-not-found diff {} {} wood.png none.png -o x.html
-unknown-name diff {} {} -o x.html --light none
-unknown-name diff {} {} wood.png --input-space none -o x.html
+unknown-name lab compare --atlas macbeth --light F2
+option lab compare --atlas macbeth --write GQ16 -o new
+output lab compare --atlas macbeth --write PS16 -o mine
+output lab compare --atlas macbeth -o mine
+file-exists lab compare --atlas macbeth -o taken
+file-not-found lab compare -o out --atlas macbeth --atlas none.csv
+unknown-name lab compare -o out --light none
+option lab compare -o out --tolerance 0
+option lab compare -o out --write none
+file-not-found lab compare -o out --write PF16 --atlas none.csv
+file-not-found lab diff {} none.uplift
+file-not-found lab diff {} {} wood.png none.png -o x.html
+unknown-name lab diff {} {} -o x.html --light none
+unknown-name lab diff {} {} wood.png --input-space none -o x.html
 file-not-found info none.uplift
 file-not-found lights build --atlas none.csv
 unknown-name lights build --space none
@@ -120,22 +120,22 @@ colour lights query --input none.csv --plot x.png
 file-not-found lights texture wood.png none.png -o out
 unknown-name lights texture wood.png fire.exr -o out --input-space none
 option lights texture wood.png fire.exr -o out --wavelengths 1:2:1
-colour mix teal
-colour mix '1: '
-ambiguous-numbers mix 0,2,0,3,0,4
-rgb-out-of-gamut mix #888 1.5,0,0
-option mix -1:#ffffff
-rgb-out-of-gamut mix 1:1.5,0,0
-colour mix #802020/#c03030
-option mix #802020 --internal-reflectance 1
-file-not-found mix --duntley none.csv
-colour mix #888 none --plot x.png
-file-not-found mix #888 --over none.png -o x.exr
-unknown-name mix #888 --over wood.png -o x.exr --input-space none
-option mix #888 --wavelengths 1:2:1 --plot x.png
-file-not-found mix #888 --atlas none.csv --plot x.png
-file-not-found mix white --paints none.toml --plot x.png
-unknown-name mix white green --paints paints.toml --plot x.png
+colour paints mix teal
+colour paints mix '1: '
+ambiguous-numbers paints mix 0,2,0,3,0,4
+rgb-out-of-gamut paints mix #888 1.5,0,0
+option paints mix -1:#ffffff
+rgb-out-of-gamut paints mix 1:1.5,0,0
+colour paints mix #802020/#c03030
+option paints mix #802020 --internal-reflectance 1
+file-not-found paints mix --duntley none.csv
+colour paints mix #888 none --plot x.png
+file-not-found paints mix #888 --over none.png -o x.exr
+unknown-name paints mix #888 --over wood.png -o x.exr --input-space none
+option paints mix #888 --wavelengths 1:2:1 --plot x.png
+file-not-found paints mix #888 --atlas none.csv --plot x.png
+file-not-found paints mix white --paints none.toml --plot x.png
+unknown-name paints mix white green --paints paints.toml --plot x.png
 file-not-found paints fit two.csv --recipes none.csv -o x.toml
 option paints fit two.csv --refractive-index 0.5 -o x.toml
 file-exists paints fit two.csv -o mine
@@ -145,9 +145,9 @@ unknown-name paints match #888 --paints paints.toml --paint green --plot x.png
 unknown-name paints match #888 --paints paints.toml --light none --plot x.png
 colour paints match #888 --paints paints.toml --ground none --plot x.png
 file-not-found paints match #888 --paints paints.toml --atlas none.csv --plot x.png
-file-not-found palette palette.toml --image none.png --html x.html --plot x.png
-file-not-found palette none.toml -o x.csv
-unknown-name palette palette.toml --label none=#888 --image wood.png --html x.html
+file-not-found lab palette palette.toml --image none.png --html x.html --plot x.png
+file-not-found lab palette none.toml -o x.csv
+unknown-name lab palette palette.toml --label none=#888 --image wood.png --html x.html
 file-not-found plan none.toml
 file-not-found plan scene.toml
 colour query #cc331
@@ -220,17 +220,16 @@ file-not-found report none.uplift
 output slices {} --plot x.jpg
 file-not-found slices none.uplift --plot x.png
 output slices {} -o none/x.exr --plot x.png
-too-few-entries study held-out --atlas two.csv --dim 4
-file-not-found study held-out --atlas macbeth --atlas none.csv
-option study held-out --atlas macbeth --coefficients 99
-option study held-out --atlas macbeth --dim 1
-atlas study moments --atlas macbeth.txt --atlas copy/macbeth.txt
-output study moments --atlas macbeth -o mine
-option study moments --atlas macbeth --max-moments 99 -o out
-file-not-found study moments --atlas none.csv -o out
-option study sensitivity {} -o out --method none
-file-not-found study sensitivity none.uplift -o out
-file-not-found study stability --atlas none.csv -o out
+too-few-entries lab study held-out --atlas two.csv --dim 4
+file-not-found lab study held-out --atlas macbeth --atlas none.csv
+option lab study held-out --atlas macbeth --coefficients 99
+option lab study held-out --atlas macbeth --dim 1
+atlas lab study moments --atlas macbeth.txt --atlas copy/macbeth.txt
+output lab study moments --atlas macbeth -o mine
+file-not-found lab study moments --atlas none.csv -o out
+option lab study sensitivity {} -o out --method none
+file-not-found lab study sensitivity none.uplift -o out
+file-not-found lab study stability --atlas none.csv -o out
 texture texture none*.png -o out
 output texture wood.png -o out.png
 output texture wood.png fire.exr -o out.exr
@@ -244,41 +243,41 @@ option texture wood.png fire.exr -o out --wavelengths 1:2:1
 file-not-found texture wood.png -o x.exr --cube {} --cube {} --mask none.png
 output texture wood.png wood.png -o out
 option texture wood.png fire.exr -o out --depth half --representation multipliers
-option wavelengths --count 0 --atlas macbeth
-undefined-rule wavelengths --count 3 --method meyer --atlas macbeth
-option wavelengths --wavelengths 0.4:0.7:0.1 --atlas macbeth
-unknown-name wavelengths --count 4 --illuminant none --plot x.png
-file-not-found wavelengths --count 4 --atlas macbeth --atlas none.csv --plot x.png
-option wavelengths --count 99 --plot x.png
-option wavelengths --count 4 --space camera --observer none.json --plot x.png
-unknown-name wavelengths --count 4 --light none --plot x.png
-option wavelengths --wavelengths 1:2:1 --plot x.png
-option wavelengths --tolerance 0 --plot x.png
+option lab wavelengths --count 0 --atlas macbeth
+undefined-rule lab wavelengths --count 3 --method meyer --atlas macbeth
+option lab wavelengths --wavelengths 0.4:0.7:0.1 --atlas macbeth
+unknown-name lab wavelengths --count 4 --illuminant none --plot x.png
+file-not-found lab wavelengths --count 4 --atlas macbeth --atlas none.csv --plot x.png
+option lab wavelengths --count 99 --plot x.png
+option lab wavelengths --count 4 --space camera --observer none.json --plot x.png
+unknown-name lab wavelengths --count 4 --light none --plot x.png
+option lab wavelengths --wavelengths 1:2:1 --plot x.png
+option lab wavelengths --tolerance 0 --plot x.png
 """
 """Codes of errors, and commands of which the last input is missing or a late option is
 invalid; {} is a cube.
 """
 UNPLOTTED = """
 advise wood.png --cube {} --plot x.png
-bounds #888 --plot x.svg
+lab bounds #888 --plot x.svg
 check --renderer colours.csv --plot x.png
 chart --atlas macbeth --quick
-compare --atlas macbeth --quick -o out
-diff {} {} -o x.html
+lab compare --atlas macbeth --quick -o out
+lab diff {} {} -o x.html
 lights info --plot x.png
 lights query 1 1 1 --plot x.png
-mix #888 --plot x.png
+paints mix #888 --plot x.png
 paints match #888 --paints paints.toml --plot x.png
-palette palette.toml --plot x.png
-palette palette.toml --plot-spectra x.pdf
+lab palette palette.toml --plot x.png
+lab palette palette.toml --plot-spectra x.pdf
 query #888 --plot x.png
 relight wood.png --atlas macbeth
 report {}
 slices {} --plot x.png
-study moments --atlas macbeth -o out
-study sensitivity {} -o out
-study stability --atlas macbeth -o out
-wavelengths --count 4 --plot x.png
+lab study moments --atlas macbeth -o out
+lab study sensitivity {} -o out
+lab study stability --atlas macbeth -o out
+lab wavelengths --count 4 --plot x.png
 """
 """Commands that need matplotlib."""
 PACKAGES = {
@@ -291,19 +290,19 @@ lights texture wood.png fire.exr -o out --scheduler tcp://127.0.0.1:1
 atlas macbeth paints.xlsx -o x.csv
 build --atlas macbeth --library paints.xlsx
 chart --atlas macbeth --atlas paints.xlsx
-compare --atlas macbeth --atlas paints.xlsx -o out
+lab compare --atlas macbeth --atlas paints.xlsx -o out
 lights build --atlas paints.xlsx
-mix #888 --atlas paints.xlsx --plot x.png
-palette spreadsheet.toml -o x.csv
+paints mix #888 --atlas paints.xlsx --plot x.png
+lab palette spreadsheet.toml -o x.csv
 plan spreadsheet-scene.toml
 relight wood.png --atlas macbeth --atlas paints.xlsx
 report {} --atlas paints.xlsx
-study moments --atlas macbeth --atlas paints.xlsx -o out
-wavelengths --count 4 --atlas paints.xlsx --plot x.png
+lab study moments --atlas macbeth --atlas paints.xlsx -o out
+lab wavelengths --count 4 --atlas paints.xlsx --plot x.png
 """,
 }
 """Commands by the optional package that they need."""
-GROUPS = ("lab", "lights", "paints", "passes", "study")
+GROUPS = ("lab", "lab study", "lights", "paints", "passes")
 WITHOUT_ROWS = {
     "check": "checks all cubes that it can read",
     "export": "writes one file as its last act",

@@ -1,4 +1,4 @@
-"""``uplift wavelengths``."""
+"""``uplift lab wavelengths``."""
 
 import matplotlib.image
 import pytest
@@ -9,14 +9,14 @@ from numpy.testing import assert_allclose
 def choose(run, macbeth):
     """Standard output for the ColorChecker."""
     return lambda *args, **options: (
-        run("wavelengths --atlas", macbeth, *args, **options).stdout
+        run("lab wavelengths --atlas", macbeth, *args, **options).stdout
     )
 
 
 @pytest.fixture
 def answer(ask, macbeth):
     """Answer in JSON for the ColorChecker."""
-    return lambda *args: ask("wavelengths --atlas", macbeth, *args)
+    return lambda *args: ask("lab wavelengths --atlas", macbeth, *args)
 
 
 def test_plot(choose, home):
@@ -56,7 +56,7 @@ def test_given_wavelengths(answer):
     ],
 )
 def test_options_that_exclude_or_need_others(misuse, options, name):
-    assert name in misuse(f"wavelengths {options}")
+    assert name in misuse(f"lab wavelengths {options}")
 
 
 def test_orders_of_the_channels(answer):

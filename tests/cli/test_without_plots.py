@@ -5,7 +5,7 @@ import subprocess
 import sys
 
 WITHOUT = """import sys
-sys.modules.update(matplotlib=None, PIL=None)
+sys.modules.update(matplotlib=None)
 from uplift_cli.main import main
 for line in sys.argv[1:]:
     main(line.split(), standalone_mode=False)
@@ -17,7 +17,7 @@ def test_colours_and_pages_without_figures_need_no_matplotlib(tmp_path, cubes):
     lines = (
         "query #f80 --light 6500K",
         f"relight -o page.html --cube {cube} --light A",
-        "bounds #888 --html look.html",
+        "lab bounds #888 --html look.html",
     )
     subprocess.run(
         [sys.executable, "-c", WITHOUT, *lines],

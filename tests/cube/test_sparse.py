@@ -19,7 +19,7 @@ from uplift.common import machine
 from uplift.common.errors import CubeFileError, OutputError
 from uplift.cube.file import digest, read, write
 from uplift.cube.schema import POINTS
-from uplift.extras.images.exr import write_slices
+from uplift.extras.images.slices import write_slices
 from uplift.extras.pages.sheet import write_sheet
 from uplift.lattice.lattice import CORNERS, Lattice
 from uplift.lattice.point_table import Status

@@ -156,12 +156,6 @@ def test_minima_are_those_of_minpack(sensor, measured, model):
         assert ours <= other * (1 + 1e-6)
 
 
-def test_a_fit_does_not_depend_on_the_others(sensor, measured):
-    goal = goal_of(problem_of(sensor))
-    alone = np.concatenate([minimise(goal, each[None]) for each in measured[:4]])
-    assert_allclose(minimise(goal, measured)[:4], alone, rtol=1e-9)
-
-
 def test_error_is_the_difference_between_fit_and_measurement(sensor, measured):
     found = fit_entries(problem_of(sensor, ("A",)), measured, sensor.rgb(measured))
     spectra = evaluate(MODEL, found.multipliers, sensor.wavelengths)

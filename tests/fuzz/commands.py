@@ -69,15 +69,15 @@ LINES = (
     "atlas a.csv --format csv",
     "atlas a.csv -o b.csv", "atlas a.csv a.txt", "atlas {}", "atlas a.txt --space {}",
     "atlas a.txt --observer {}",
-    "mix 1:{} --cube c.uplift", ("mix 1:{} 1:#ff0000 "
-    "--atlas a.csv"), "mix {}:#ff0000 --ground {}",
-    ("wavelengths --count 3 "
-    "--atlas a.csv"), ("wavelengths --count 3 "
-    "--light {}"), "palette p.toml",
-    "palette p.toml --format json", ("palette p.toml "
+    "paints mix 1:{} --cube c.uplift", ("paints mix 1:{} 1:#ff0000 "
+    "--atlas a.csv"), "paints mix {}:#ff0000 --ground {}",
+    ("lab wavelengths --count 3 "
+    "--atlas a.csv"), ("lab wavelengths --count 3 "
+    "--light {}"), "lab palette p.toml",
+    "lab palette p.toml --format json", ("lab palette p.toml "
     "--plot m.png "
-    "--plot-spectra s.png"), "palette p.toml --html p.html",
-    ("palette p.toml --html "
+    "--plot-spectra s.png"), "lab palette p.toml --html p.html",
+    ("lab palette p.toml --html "
     "p.html --label {}"), "chart --recommend --tolerance 1 --from chart.csv",
     "chart --recommend --light {}", "export c.uplift -o x.csv",
     "export c.uplift -o x.h", "export c.uplift -o x.npz",

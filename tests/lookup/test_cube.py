@@ -12,7 +12,6 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
-import uplift
 from tests.extras.paint.invented import invented
 from tests.helpers import raises
 from uplift import bulk, load, load_emission, read_atlas
@@ -262,8 +261,3 @@ def test_names_stand_for_packaged_files_unless_a_file_has_the_name(
     (tmp_path / "srgb").write_bytes(b"")
     assert find_file("srgb") == "srgb"
     assert find_file("sRGB") == DEFAULT
-
-
-def test_components_in_three_arguments_are_no_colour():
-    with raises(ColourError):
-        uplift.load().reflectance(0.5, 0.2, 0.1)

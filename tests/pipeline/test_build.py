@@ -232,6 +232,18 @@ def test_builds_do_not_depend_on_threads():
             "option",
         ),
         ({"warp": "visions"}, UnknownNameError, "unknown-name"),
+        ({"prior": "flat"}, UnknownNameError, "unknown-name"),
+        ({"neutral": "grey"}, UnknownNameError, "unknown-name"),
+        ({"leave_out": ["absent"]}, UnknownNameError, "unknown-name"),
+        ({"neutral": "flat", "growth": "neighbours"}, OptionError, "option"),
+        *(
+            ({"library": MACBETH, **options}, OptionError, "option")
+            for options in (
+                {"prior": "smooth"},
+                {"model": "sigmoid"},
+                {"coefficients": 3},
+            )
+        ),
         ({"scene": []}, OptionError, "option"),
     ],
 )

@@ -1,6 +1,4 @@
-"""Builds with a prior, libraries and families left out: recorded, repeatable;
-contradictions are errors.
-"""
+"""Builds with a prior, libraries and families left out: recorded and repeatable."""
 
 import shutil
 
@@ -15,7 +13,7 @@ from uplift.atlas.atlas import Atlas, Entry
 from uplift.atlas.sources import read_atlas
 from uplift.colorimetry.delta_e import delta_e_spectra, rgb_to_lab
 from uplift.colorimetry.observer import light
-from uplift.common.errors import CubeFileError, OptionError, UnknownNameError
+from uplift.common.errors import CubeFileError
 from uplift.extras.report.rebuild import rebuild
 from uplift.lookup.cube import load
 
@@ -105,20 +103,6 @@ def test_neutral_flat_in_a_wide_gamut_and_of_a_model_without_a_choice():
         for name in ("flat", "expected")
     )
     assert_array_equal(*spectra)
-
-
-def test_options_that_contradict_or_do_not_exist_are_errors():
-    for options in ({"prior": "smooth"}, {"model": "sigmoid"}, {"coefficients": 3}):
-        with raises(OptionError, "option"):
-            uplift.build(dim=2, library=TCS, **options)
-    with raises(UnknownNameError, "unknown-name"):
-        uplift.build(dim=2, prior="flat")
-    with raises(UnknownNameError, "unknown-name"):
-        uplift.build(dim=2, neutral="grey")
-    with raises(OptionError, "option"):
-        uplift.build(dim=2, neutral="flat", growth="neighbours")
-    with raises(UnknownNameError, "unknown-name"):
-        uplift.build(dim=2, leave_out=["absent"])
 
 
 def test_spectra_that_are_not_used_as_measured_are_reported():

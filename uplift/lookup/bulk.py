@@ -79,14 +79,19 @@ class Sampler:
         """
         width = self.grid.lattice.shape[1]
         return blockwise(
-            self._chunk, as_rgb(rgb), width, np.float32, self.threads, CHUNKS[0]
+            self._chunk,
+            as_rgb(rgb),
+            width,
+            np.float32,
+            threads=self.threads,
+            block=CHUNKS[0],
         )
 
     def __reduce__(self) -> tuple[Any, ...]:
         """Pickle arrays of numpy: JAX would restore those of float64 as float32."""
         return _on_device, (
             self.sensor,
-            Grid(*map(np.asarray, self.grid)),
+            jax.tree.map(np.asarray, self.grid),
             self.threads,
             self.exact,
         )

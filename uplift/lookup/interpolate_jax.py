@@ -18,9 +18,6 @@ from uplift.common.arrays import Array, Indices
 from uplift.lattice.entry_boxes import EntryBoxes
 from uplift.lookup.node_table import NodeTable
 
-BINS = 4096
-"""Even bins of [0, 1]. A bin contains at most one node, except in the finest lattices.
-"""
 Places = NDArray[np.int32]
 
 
@@ -29,54 +26,35 @@ class Grid(NamedTuple):
     entry.
     """
 
-    nodes: Any
-    """(dim + 1,) axis nodes, and infinity."""
-    bins: Any
-    """(BINS + 1,) the last node before each bin."""
-    max_nodes_per_bin: Any
-    """(M,) zeros: only the length matters. As a shape it is known when compiling."""
-    candidates: Any
+    nodes: jax.Array
+    """(dim,) axis nodes."""
+    candidates: jax.Array
     """(K, dim³) entries whose boxes touch each cell, padded with E."""
-    boxes: Any
+    boxes: jax.Array
     """(E + 1, 3, 3) centre in linear RGB, and reciprocals of the distances to the lower
     and upper faces.
     """
-    lattice: Any
+    lattice: jax.Array
     """(dim³, N) values of the lattice; NaN at absent nodes."""
-    atlas: Any
+    atlas: jax.Array
     """(E + 1, N) values of the entries."""
-    limits: Any
+    limits: jax.Array
     """(2,) smallest and largest value."""
 
 
 def make_grid(table: NodeTable, dtype: DTypeLike) -> Grid:
     """Make the arrays, in numpy, of a table; colours and nodes will be of a type."""
     boxes = table.data.entry_boxes
-    nodes = table.data.lattice.nodes.astype(dtype)
-    bins, most = _bins(nodes)
     values = np.concatenate([table.lattice.ravel(), table.atlas.ravel()])
-    no_entry = np.zeros_like(table.lattice[:1])
-    return Grid(
-        nodes=np.append(nodes, np.asarray(np.inf, dtype)),
-        bins=bins,
-        max_nodes_per_bin=np.zeros(most, dtype),
-        candidates=_candidates(boxes),
-        boxes=_boxes(boxes).astype(dtype),
-        lattice=table.lattice,
-        atlas=np.concatenate([table.atlas, no_entry]),
-        limits=np.array([np.nanmin(values), np.nanmax(values)]),
+    arrays: tuple[Any, ...] = (
+        table.data.lattice.nodes.astype(dtype),
+        _candidates(boxes),
+        _boxes(boxes).astype(dtype),
+        table.lattice,
+        np.concatenate([table.atlas, np.zeros_like(table.lattice[:1])]),
+        np.array([np.nanmin(values), np.nanmax(values)]),
     )
-
-
-def _bins(nodes: NDArray[Any]) -> tuple[Places, int]:
-    """The last node before each bin, and the largest number of nodes in a bin.
-
-    Nodes and colours are truncated alike, so that no colour moves to the other side of
-    a node.
-    """
-    bins = (nodes * BINS).astype(np.int64)
-    before = np.searchsorted(bins, np.arange(BINS + 1), side="left") - 1
-    return np.maximum(before, 0).astype(np.int32), int(np.bincount(bins).max())
+    return Grid(*arrays)
 
 
 def _candidates(boxes: EntryBoxes) -> Places:
@@ -123,14 +101,13 @@ def _rows(array: jax.Array, index: jax.Array) -> jax.Array:
 
 def _cell(grid: Grid, rgb: jax.Array) -> jax.Array:
     """Lowest corner (n, 3)."""
-    low = _rows(grid.bins, (rgb * BINS).astype(jnp.int32))
-    for _ in range(len(grid.max_nodes_per_bin)):
-        low = low + (rgb >= _rows(grid.nodes, low + 1))
-    return jnp.minimum(low, len(grid.nodes) - 3)
+    # Comparison with all nodes is faster than a search, next to the values.
+    before = (rgb[..., None] >= grid.nodes).sum(axis=-1, dtype=jnp.int32)
+    return jnp.clip(before - 1, 0, len(grid.nodes) - 2)
 
 
 def _number(grid: Grid, position: jax.Array) -> jax.Array:
-    dim = len(grid.nodes) - 1
+    dim = len(grid.nodes)
     return (position[:, 0] * dim + position[:, 1]) * dim + position[:, 2]
 
 

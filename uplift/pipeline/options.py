@@ -237,8 +237,13 @@ class Options:
                 yield f"{name} must be in {limits}, got {format_value(value)}", ""
 
     def record(self) -> dict[str, Any]:
-        """Return the options as JSON can record them; `recorded_options` reads them.
-        Lamps are recorded with power.
+        """Convert the options to JSON values, which a cube records. Lamps have their
+        power.
+
+        Returns
+        -------
+        dict of str to Any
+            Values by name.
         """
         observer = self.observer
         named = replace(
@@ -252,8 +257,16 @@ class Options:
         }
 
     def spectrum_model(self, coefficients: int | None = None) -> Model:
-        """Create the spectrum model, from `shortest` to `longest` nm, of the nodes or
-        of other moments.
+        """Create the spectrum model, from `shortest` to `longest` nm.
+
+        Parameters
+        ----------
+        coefficients : int, optional
+            Coefficients of moments, those of nodes by default.
+
+        Returns
+        -------
+        Model
         """
         if self.model == Sigmoid.name:
             return Sigmoid(self.shortest, self.longest)

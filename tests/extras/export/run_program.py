@@ -15,7 +15,7 @@ import pytest
 from benchmarks.browser import browser
 from tests.helpers import output_of
 from tests.parts import CC, CHROMIUM, CXX, GLSLANG, NVCC, VULKAN, need, vulkan_device
-from uplift.extras.images.processes import call_in_child
+from uplift.extras.processes import call_in_child
 
 HOST = r"""
 #include <stdio.h>

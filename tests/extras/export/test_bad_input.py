@@ -55,10 +55,6 @@ def cubes(small_cube):
         ),
         (write_lut, "cube", "a.cube", {"light": "HP1", "res": 1}, OptionError),
         (write_lut, "cube", "a.cube", {"light": "moonlight"}, UnknownNameError),
-        *(
-            (write_program, "data", "a.h", {key: "x"}, UnknownNameError)
-            for key in ("style", "mode")
-        ),
         (write_program, "data", "a.h", {"form": "textures"}, OptionError),
         (
             write_program,

@@ -6,7 +6,7 @@ from typing import Annotated, Any
 
 import numpy as np
 import pytest
-from pydantic import Discriminator, Field, Tag, model_validator
+from pydantic import model_validator
 
 from tests.helpers import raises
 from uplift.colorimetry import observer
@@ -38,23 +38,12 @@ class Lamp:
     light: Annotated[str, resolves(observer.illuminant_spd)] = "D65"
 
 
-class Goal(SpecModel):
-    goal: int
-
-
 class Table(SpecModel):
     """A table of all kinds of values."""
 
     max_value: Number = 1.0
     weight: NotNegative = 1.0
     lamps: tuple[Lamp, ...] = ()
-    goals: dict[
-        str,
-        Annotated[
-            Annotated[Goal, Tag("~table")] | Annotated[int, Tag("~number")],
-            Discriminator(lambda goal: "~" + ("table", "number")[goal == 3]),
-        ],
-    ] = Field(default_factory=dict)
     file: FolderPath | None = None
 
     @model_validator(mode="after")
@@ -100,8 +89,6 @@ LAMP = "[[lamps]]\nto-xyz = [[1, 2]]\nnumbers = [1]"
         ("max-value = true", "max-value must be"),
         ("max-value = inf", "max-value must be"),
         ("weight = -1", "weight must be"),
-        ("goals.a = 4", "goals.a must be a table, got 4"),
-        ("goals.a = {}", "goals.a.goal: required key is missing"),
         ("lamps = [3]", "lamps[0] must be a table, got 3"),
         ("lamps = 3", "lamps must be"),
         ("[[lamps]]\nnumbers = [1]", "lamps[0].to-xyz: required key is missing"),

@@ -13,7 +13,7 @@ from tests.helpers import raises
 from uplift.colorimetry.delta_e import delta_e_2000, lab
 from uplift.common.errors import OutputError
 from uplift.cube.file import digest
-from uplift.extras.images.exr import write_slices
+from uplift.extras.images.slices import write_slices
 
 
 def parts(path: Path) -> list[OpenEXR.Part]:

@@ -7,7 +7,7 @@ import pytest
 import uplift
 from benchmarks import conformance
 from tests.parts import CC, MITSUBA, need
-from uplift.extras.images.processes import call_in_child
+from uplift.extras.processes import call_in_child
 from uplift.extras.report.conformance import check_renderer
 
 PATIENCE = 300

@@ -8,7 +8,7 @@ from tests.conftest import ROOT
 from tests.helpers import raises, without_evidence
 from uplift.colorimetry.illuminants import Lamp
 from uplift.colorimetry.observer import light
-from uplift.common.errors import OptionError, UnknownNameError
+from uplift.common.errors import OptionError
 from uplift.extras.photographs.answers import prepare
 from uplift.extras.photographs.errors import light_errors
 from uplift.extras.photographs.photograph import photograph
@@ -78,16 +78,20 @@ def test_the_light_of_the_cube_is_no_default(cube):
     assert "A" in default_candidates(cube)
 
 
-def test_bad_input(cube, colours):
+@pytest.mark.parametrize(
+    ("candidates", "targets", "noise"),
+    [
+        ([], TARGETS, 0.0),
+        (["A"], [], 0.0),
+        (["D65"], TARGETS, 0.0),
+        (["A"], TARGETS, -1.0),
+    ],
+)
+def test_bad_input(cube, colours, candidates, targets, noise):
     with raises(OptionError):
-        rank_second_lights(cube, colours, [], TARGETS)
-    with raises(OptionError):
-        rank_second_lights(cube, colours, ["A"], [])
-    with raises(OptionError):
-        rank_second_lights(cube, colours, ["D65"], TARGETS)
-    with raises(UnknownNameError, "unknown-name"):
-        rank_second_lights(cube, colours, ["candle-ish"], TARGETS)
-    with raises(OptionError):
-        rank_second_lights(cube, colours, ["A"], TARGETS, (-1.0, 0.0))
+        rank_second_lights(cube, colours, candidates, targets, (noise, 0.0))
+
+
+def test_errors_need_entries_that_were_left_out(cube, colours):
     with raises(OptionError, "too-few-entries"):
         error_without(without_evidence(cube), colours, TARGETS)

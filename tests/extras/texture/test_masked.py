@@ -13,7 +13,7 @@ from uplift.common.errors import OptionError, TextureError
 from uplift.extras import texture
 from uplift.models.model import evaluate
 
-from .conftest import WAVELENGTHS, read_channels, write_exr
+from .conftest import WAVELENGTHS, planes, read_channels, write_exr
 
 SHAPE = (20, 30)
 SPECTRUM = texture.Spectrum(WAVELENGTHS)
@@ -28,10 +28,7 @@ def cubes(small_cube, plain_cube, macbeth_cube):
 @pytest.fixture(scope="module")
 def image(tmp_path_factory, colours):
     path = tmp_path_factory.mktemp("image") / "image.exr"
-    return write_exr(
-        path,
-        {name: np.ascontiguousarray(colours[..., k]) for k, name in enumerate("RGB")},
-    )
+    return write_exr(path, planes(colours))
 
 
 def prepared(cubes, mask, encoding=SPECTRUM):
@@ -183,10 +180,7 @@ def test_an_entry_outside_the_space_answers_where_its_cube_is_chosen(
     boxes = cyan_cube.data.outside_boxes
     data = plain_cube.data
     rgb = np.tile(boxes.rgb[0], (1, 3, 1)).astype(np.float32)
-    image = write_exr(
-        tmp_path / "cyan.exr",
-        {name: rgb[..., k].copy() for k, name in enumerate("RGB")},
-    )
+    image = write_exr(tmp_path / "cyan.exr", planes(rgb))
     mask = write_exr(
         tmp_path / "weights.exr", {"Y": np.array([[0, 1, 0.5]], dtype=np.float32)}
     )

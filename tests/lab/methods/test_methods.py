@@ -10,7 +10,7 @@ from numpy.testing import assert_allclose
 from tests.parts import LLVM, need
 from uplift.atlas.sources import read_atlas
 from uplift.colorimetry import observer
-from uplift.extras.images.processes import call_in_child
+from uplift.extras.processes import call_in_child
 from uplift.lab.chart.selection import METHODS, select_methods
 from uplift.lab.method import NotInstalledError
 from uplift.lab.methods import mitsuba3

@@ -36,6 +36,7 @@ ERROR_LENGTH = 0.02
 """Distance in u′v′ over which errors of left-out lamps are averaged."""
 FAR_SHARE = 1e-2
 """Weight of the mean error of all lamps, which far from them is the expected one."""
+MAX_NODES = 1024
 SURFACES = "macbeth"
 """Atlas of the surfaces by which predictions of lamps are judged."""
 
@@ -65,10 +66,10 @@ def build_emission(
         colour-science. Of lamps of nearly the same chromaticity, those of the atlas are
         exact; without an atlas, the CIE illuminants A and D50 to D75.
     knots : int, default 96
-        Nodes around white, at least 3. The spectral locus has one at each corner, so
+        Nodes around white, 3 to 1024. The spectral locus has one at each corner, so
         there are never fewer than these.
     rings : int, default 24
-        Nodes from white to the locus, at least 3.
+        Nodes from white to the locus, 3 to 1024.
     space : str, default "sRGB"
         RGB space of queries, by its name in colour-science. White is the white of the
         space, without adaptation.
@@ -108,6 +109,11 @@ def build_emission(
     """
     knots = as_whole_number(knots, "knots", 3)
     rings = as_whole_number(rings, "rings", 3)
+    if max(knots, rings) > MAX_NODES:
+        raise OptionError(
+            f"knots and rings must each be a whole number from 3 to {MAX_NODES}, got "
+            f"{knots} and {rings}"
+        )
     observers.require_observer(observer, "emission tables")
     sensor = observers.sensor(space, "D65", observer)
     radiometry = sensor.cmfs / sensor.cmfs[:, 1].sum()

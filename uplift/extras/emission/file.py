@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from uplift.common.arrays import Array
+from uplift.common.arrays import Array, distances
 from uplift.common.text import pluralise
 from uplift.cube.container import (
     RANGE,
@@ -213,7 +213,7 @@ def _check(data: EmissionData) -> None:
     require(realisable, "lamps must be realisable")
     uv = data.entries.uv
     radius = data.entries.radius
-    apart = np.linalg.norm(uv[:, None] - uv, axis=-1) - radius[:, None] - radius
+    apart = distances(uv, uv) - radius[:, None] - radius
     overlap = bool((apart[~np.eye(len(uv), dtype=bool)] < -MAX_OFFSET).any())
     valid = not overlap and bool((radius <= MAX_RADIUS).all())
     require(valid, f"discs must not overlap, and have radii up to {MAX_RADIUS:g}")

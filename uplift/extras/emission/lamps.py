@@ -21,7 +21,6 @@ from uplift.colorimetry.observer import (
 from uplift.common.arrays import Array, StrPath
 from uplift.common.errors import (
     AtlasError,
-    UnknownNameError,
     UpliftError,
     UpliftWarning,
     unknown_name,
@@ -149,13 +148,10 @@ def find_light(text: str) -> Illuminant:
     `UnknownNameError` for a text that is neither.
     """
     file = lamp_file(text)
-    try:
+    if is_illuminant(text) or not os.path.lexists(file):
         tables.stated_name("illuminant", text)
-    except UnknownNameError:
-        if os.path.lexists(file):
-            return read_lamp(file, text[len(file) + 1 :] if file != text else None)
-        raise
-    return text
+        return text
+    return read_lamp(file, text[len(file) + 1 :] if file != text else None)
 
 
 def lamp_file(text: str) -> str:

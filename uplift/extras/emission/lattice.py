@@ -85,22 +85,12 @@ class ChromaticityLattice:
     rings: Array
 
     def __post_init__(self) -> None:
-        shapes = (
-            self.white.shape == (2,)
-            and self.knots.shape == (len(self.knots), 2)
-            and self.rings.ndim == 1
-        )
-        if not shapes or len(self.knots) < 3 or len(self.rings) < 2:
+        rings = self.rings
+        increase = len(rings) >= 2 and bool((np.diff(rings) > 0).all())
+        if len(self.knots) < 3 or not increase or (rings[0], rings[-1]) != (0, 1):
             raise _error(
-                f"must have 3 knots and 2 rings or more, got {self.knots.shape}, "
-                f"{self.rings.shape}"
+                "must have 3 knots or more, and rings that increase from 0 to 1"
             )
-        if not (
-            self.rings[0] == 0
-            and self.rings[-1] == 1
-            and (np.diff(self.rings) > 0).all()
-        ):
-            raise _error("must have rings that increase from 0 to 1")
         turns_left = cross(self._spokes, np.roll(self._spokes, -1, axis=0)) > 0
         if not turns_left.all() or not (np.diff(self._angles) > 0).all():
             raise _error("must have knots counterclockwise around the centre")

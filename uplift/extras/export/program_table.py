@@ -25,8 +25,6 @@ COLUMNS = 2048
 """Texels in a row of the table as an image: every graphics card that can run the
 program has textures of this width.
 """
-PROGRAM_MODES = ("spectra", "moments")
-"""What programs interpolate."""
 MOVES = {
     "LEAST": LEAST,
     "SLOPE": SLOPE,

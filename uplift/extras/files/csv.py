@@ -10,7 +10,7 @@ are.
 import csv
 import io
 import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from itertools import chain
 from typing import Any
 
@@ -59,11 +59,6 @@ def csv_text(
     text = io.StringIO()
     write_csv(text, (header, *rows), quote_text=quote_text)
     return text.getvalue()
-
-
-def records_csv(records: Sequence[Mapping[str, Any]]) -> str:
-    """Format dictionaries with equal keys as CSV with a header line."""
-    return csv_text(list(records[0]), [list(record.values()) for record in records])
 
 
 def parse_csv(data: bytes) -> list[dict[str, str]]:

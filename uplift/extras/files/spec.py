@@ -13,7 +13,7 @@ import tomllib
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path, PureWindowsPath
-from typing import Annotated, Any, NoReturn, TypeVar
+from typing import Annotated, Any, TypeVar
 
 import numpy as np
 from pydantic import (
@@ -279,43 +279,3 @@ def _place(keys: Iterable[Key]) -> str:
         f"[{key}]" if isinstance(key, int) else f".{shorten(key)}" for key in parts
     ]
     return "".join(names).removeprefix(".")
-
-
-# Until all callers read models
-
-
-InsidePath = Annotated[str, AfterValidator(check_inside)]
-"""A path within the folder of the spec file."""
-
-
-@dataclass(frozen=True)
-class SpecFile:
-    """The values of a parsed file, and the type of the errors that it raises."""
-
-    path: Path
-    values: dict[str, Any]
-    error: type[UpliftError]
-
-    def validate(self, model: type[Model], hint: str = "") -> Model:
-        """Check the values against a model."""
-        try:
-            return TypeAdapter(model).validate_python(self.values)
-        except ValidationError as caught:
-            raise _located(caught, self.path, self.error, hint) from caught
-
-    def fail(
-        self, keys: Iterable[Key], text: str, *, code: str = INVALID, hint: str = ""
-    ) -> NoReturn:
-        """Raise the error for the value at a key path."""
-        fault = problem(text, hint, code, at=tuple(keys))
-        raise _located(fault, self.path, self.error, hint)
-
-
-def read_toml(path: StrPath, error: type[UpliftError]) -> SpecFile:
-    """Read a TOML file, without validating its values."""
-    return SpecFile(Path(path), _read(path, error, "TOML"), error)
-
-
-def read_json(path: StrPath, error: type[UpliftError]) -> SpecFile:
-    """Read a JSON file that holds an object, without validating its values."""
-    return SpecFile(Path(path), _read(path, error, "JSON"), error)

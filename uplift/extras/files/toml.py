@@ -72,26 +72,3 @@ def toml_value(value: object) -> str:
 def _escaped(letter: str) -> str:
     is_plain = letter.isprintable() and letter not in '"\\'
     return letter if is_plain else f"\\U{ord(letter):08x}"
-
-
-# Until all callers write tables
-
-
-def text_value(text: str) -> str:
-    """Write a text."""
-    return toml_value(text)
-
-
-def number_value(value: float) -> str:
-    """Write a number."""
-    return toml_value(float(value))
-
-
-def row_value(values: Any) -> str:
-    """Write numbers (n,)."""
-    return toml_value(np.asarray(values, dtype=float))
-
-
-def matrix_value(values: Any) -> str:
-    """Write numbers (m, n)."""
-    return toml_value(np.asarray(values, dtype=float))

@@ -57,12 +57,14 @@ def read(document: Document) -> Measurements:
 
 
 def _content(cxf: Any) -> Measurements:
-    specifications = _measurements(cxf.resources)
+    resources = cxf.resources
+    stated = _part(resources, "color_specification_collection", "color_specification")
+    specifications = {row.id: row.measurement_spec for row in stated or ()}
     spectra = list[Spectrum]()
     colours = set[str]()
     conditions = set[str]()
     difference = 0.0
-    for sample in _objects(cxf.resources):
+    for sample in _part(resources, "object_collection", "object_value") or ():
         name = (sample.name or sample.id or "").strip()
         by_type = _by_type(sample)
         for kind in SPECTRA:
@@ -77,7 +79,7 @@ def _content(cxf: Any) -> Measurements:
             spectra.append(Spectrum(name, (), (), quantity=custom))
         difference = max(difference, _difference(by_type[SPECTRA[0]]))
         colours.update(kind for kind in by_type if kind.startswith("Color"))
-    description = cxf.file_information and cxf.file_information.description
+    description = _part(cxf, "file_information", "description")
     return Measurements(
         tuple(spectra),
         scales=_scales(spectra),
@@ -93,7 +95,7 @@ def _content(cxf: Any) -> Measurements:
 def _by_type(sample: Any) -> dict[str, list[Any]]:
     """Return the values of an object by the names of their types."""
     by_type = defaultdict[str, list[Any]](list)
-    for choice in sample.color_values.choice if sample.color_values else ():
+    for choice in _part(sample, "color_values", "choice") or ():
         by_type[type(choice).__name__].append(choice)
     return by_type
 
@@ -140,51 +142,28 @@ def _condition_note(conditions: Set[str], difference: float) -> tuple[str, ...]:
     return (note,)
 
 
-def _objects(resources: Any) -> Sequence[Any]:
-    collection = resources.object_collection if resources else None
-    return collection.object_value if collection else ()
-
-
-def _measurements(resources: Any) -> dict[str, Any]:
-    """Return how spectra were measured by the identifier of the colour
-    specification.
-    """
-    collection = resources.color_specification_collection if resources else None
-    specifications = collection.color_specification if collection else []
-    return {
-        specification.id: specification.measurement_spec
-        for specification in specifications
-        if specification.measurement_spec
-    }
-
-
 def _condition(choice: Any, specifications: dict[str, Any]) -> str:
     """Return the measurement condition of ISO 13655, such as M1; empty if none is
     stated.
     """
     measured = specifications.get(choice.color_specification)
-    light = (
-        measured.device.device_illumination if measured and measured.device else None
-    )
-    stated = (
-        f"{light.value.value if light and light.value else ''} "
-        f"{choice.color_specification or ''}"
-    )
-    found = CONDITION.search(stated)
+    light = _part(measured, "device", "device_illumination", "value", "value")
+    found = CONDITION.search(f"{light or ''} {choice.color_specification or ''}")
     return found[0] if found else ""
 
 
 def _spectrum(name: str, choice: Any, specifications: dict[str, Any]) -> Spectrum:
     measured = specifications.get(choice.color_specification)
-    span = measured.wavelength_range if measured else None
-    start = (span and span.start_wl) or START
-    step = (span and span.increment) or STEP
+    start = _part(measured, "wavelength_range", "start_wl") or START
+    step = _part(measured, "wavelength_range", "increment") or STEP
     first = start if choice.start_wl is None else choice.start_wl
     values = [float(value) for value in choice.value]
     nm = [float(first + step * index) for index in range(len(values))]
-    return Spectrum(
-        name,
-        nm,
-        values,
-        date=one_line(choice.measure_date),
-    )
+    return Spectrum(name, nm, values, date=one_line(choice.measure_date))
+
+
+def _part(element: Any, *names: str) -> Any:
+    """Return an element within others; None if one of them is missing."""
+    for name in names:
+        element = getattr(element, name, None)
+    return element

@@ -1,5 +1,6 @@
 """The scale of the values of a file: as given, as the file states, or by the values."""
 
+import re
 from collections.abc import Sequence
 
 import numpy as np
@@ -8,7 +9,7 @@ from uplift.atlas.atlas import ASSUMED, HIGHEST
 from uplift.atlas.document import SourceLocation, truncate
 from uplift.common.errors import UpliftWarning, warn
 from uplift.extras.formats.samples import Samples
-from uplift.extras.formats.statements import PERCENT, Scale
+from uplift.extras.formats.statements import PERCENT, TEN_THOUSAND, Scale
 
 GIVEN = {"percent": ("percent", PERCENT), "fraction": ("0 to 1", 1.0)}
 WHICH_SCALE = "pass measured='percent' or measured='fraction'"
@@ -24,6 +25,10 @@ JUMP = 30.0
 """Ratio of neighbouring samples that no reflectance has."""
 FLOOR = 0.1
 """Smallest divisor of a ratio, in units of the table."""
+GROUPED = re.compile(r"[+-]?[1-9]\d{0,2}(?:,\d{3})+")
+"""A number that may have commas of thousands."""
+WHITE = 1.1
+"""Largest reflectance of a white that is not fluorescent."""
 
 
 def find_scale(
@@ -145,3 +150,27 @@ def _check_one_scale(
             ),
             code="mixed-scales",
         )
+
+
+def comma_scales(texts: Sequence[str], divisors: Sequence[float]) -> list[Scale]:
+    """Return the scale that commas of thousands in the values of a table state, two if
+    they may be decimal, none if they are decimal. Scales of ``divisors`` are stated.
+
+    Commas are those of thousands if all numbers that have one have groups of three
+    digits, and either there are whole numbers without one, or the numbers are
+    reflectances × 10,000 up to white.
+    """
+    grouped = [text for text in texts if "," in text]
+    is_decimal = divisors and TEN_THOUSAND not in divisors
+    if is_decimal or not grouped or not all(map(GROUPED.fullmatch, grouped)):
+        return []
+    first = grouped[0]
+    whole = first.replace(",", "")
+    top = max(float(text.replace(",", "")) for text in grouped) / TEN_THOUSAND
+    has_others = any(text.isdigit() and int(text) for text in texts)
+    if divisors or has_others or 1 <= top <= WHITE:
+        return [Scale(TEN_THOUSAND, f"{first} is {whole}", is_assumed=True)]
+    if top > HIGHEST:
+        return []
+    decimal = Scale(PERCENT, f"{first} is {first.replace(',', '.')} percent")
+    return [decimal, Scale(TEN_THOUSAND / 1000, f"{first} is {whole} of 10,000")]

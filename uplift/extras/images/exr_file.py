@@ -46,7 +46,7 @@ def check_size(path: Path) -> None:
     """
     with path.open("rb") as file:
         end = os.fstat(file.fileno()).st_size
-        start = read_exactly(file, 8)
+        start = _read_exactly(file, 8)
         if start[:4] != MAGIC:
             raise damaged()
         is_multi_part = bool(int.from_bytes(start[4:], "little") & MULTI_PART)
@@ -61,7 +61,7 @@ def check_size(path: Path) -> None:
                 continue
             attributes += 1
             kind = _name(file)
-            (size,) = struct.unpack("<i", read_exactly(file, 4))
+            (size,) = struct.unpack("<i", _read_exactly(file, 4))
             value = file.tell()
             if not 0 <= size <= end - value:
                 raise damaged()
@@ -144,11 +144,11 @@ def _name(file: BinaryIO) -> bytes:
     return text
 
 
-def read_exactly(file: BinaryIO, size: int, name: str = "OpenEXR") -> bytes:
-    """Read bytes. Raises `TextureError` at the end of a file of this format."""
+def _read_exactly(file: BinaryIO, size: int) -> bytes:
+    """Read bytes. Raises `TextureError` at the end of the file."""
     data = file.read(size)
     if len(data) < size:
-        raise damaged(name)
+        raise damaged()
     return data
 
 

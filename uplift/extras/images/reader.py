@@ -76,9 +76,13 @@ class Reader(ABC):
     @property
     def settings(self) -> dict[str, str]:
         """Description for the header of textures."""
-        names = ("encoding", "out_of_gamut", "space")
-        values = {name: getattr(self, name, None) for name in names}
-        return {name: value for name, value in values.items() if value is not None}
+        space = {} if self.space is None else {"space": self.space}
+        return {"encoding": self.encoding, **self._mapping, **space}
+
+    @property
+    def _mapping(self) -> dict[str, str]:
+        """Gamut mapping among the settings: colours are not mapped by default."""
+        return {}
 
     def channels(self, found: ColourChannels) -> ColourChannels:
         """How the colour channels that a part has are read: by default as found."""
@@ -210,6 +214,10 @@ class SurfaceReader(Reader):
     def __post_init__(self) -> None:
         super().__post_init__()
         check_method(self.out_of_gamut)
+
+    @property
+    def _mapping(self) -> dict[str, str]:
+        return {"out_of_gamut": self.out_of_gamut}
 
     def decoder(self, part: Part) -> "Decoder":
         """Make the decoder of a part.

@@ -15,7 +15,7 @@ from uplift.common.files import check_output
 from uplift.common.text import pluralise
 from uplift.cube.data import CubeData
 from uplift.extras.colour.srgb import decode, encode
-from uplift.extras.images import exr
+from uplift.extras.images import exr, slices
 from uplift.extras.pages.figure import HIGHLIGHT, check_suffix, matplotlib, write_figure
 from uplift.extras.pages.marks import error_map, line, picture
 from uplift.extras.pages.panels import Axis, Panel, draw
@@ -39,7 +39,7 @@ def write_sheet(data: CubeData, path: StrPath, *, force: bool = False) -> None:
     """
     suffix = check_suffix(path, FORMATS)
     check_output(path, force=force)
-    exr.check_slices(data)
+    slices.check_slices(data)
     figure = draw_sheet(data)
     if suffix == ".png":
         write_figure(figure, path, force=force)
@@ -89,7 +89,7 @@ def _tiles(data: CubeData, values: NDArray[Any]) -> Array:
     """Arrange values (n,) or colours (n, 3) of the nodes; absent ones are NaN."""
     present = data.points.present.reshape(-1, *[1] * (values.ndim - 1))
     shown = np.where(present, values, np.nan)
-    return mosaic(exr.blue_slices(shown, data.lattice.dim))
+    return mosaic(slices.blue_slices(shown, data.lattice.dim))
 
 
 def _colours(data: CubeData, colours: Array) -> Array:

@@ -91,26 +91,9 @@ def estimate_noise(bands: Sequence[Array], steps: int) -> Noise:
     Noise
         Standard deviations.
     """
-    means = []
-    variances = []
-    for band in bands:
-        height = band.shape[0] // BLOCK * BLOCK
-        width = band.shape[1] // BLOCK * BLOCK
-        if not (height and width):
-            continue
-        blocks = band[:height, :width].reshape(
-            height // BLOCK, BLOCK, width // BLOCK, BLOCK, 3
-        )
-        # x₋₁ − 2 x₀ + x₁ of independent noise has six times its variance, and none of
-        # a gradient.
-        second = blocks[:, :, :, :-2] - 2 * blocks[:, :, :, 1:-1] + blocks[:, :, :, 2:]
-        means.append(blocks.mean(axis=(1, 3)).reshape(-1, 3))
-        variances.append((second**2).mean(axis=(1, 3)).reshape(-1, 3) / 6)
     rounding = rounding_noise(steps) if steps else Noise()
-    if not means:
-        return rounding
-    level = np.concatenate(means).ravel()
-    variance = np.concatenate(variances).ravel()
+    blocks = [_block_noise(band).reshape(-1, 2) for band in bands]
+    level, variance = np.concatenate([np.empty((0, 2)), *blocks]).T
     usable = np.isfinite(level) & np.isfinite(variance) & (level > 0) & (level < 0.9)
     level = level[usable]
     variance = variance[usable]
@@ -124,12 +107,23 @@ def estimate_noise(bands: Sequence[Array], steps: int) -> Noise:
             continue
         flat = members[variance[members] <= np.quantile(variance[members], FLATTEST)]
         rows.append((level[flat].mean(), variance[flat].mean()))
-    at, observed = np.array(rows).T
-    noise = fit_noise(at, observed)
-    return Noise(
-        max(noise.share, rounding.share),
-        max(noise.floor, rounding.floor),
-    )
+    noise = fit_noise(*np.array(rows).T)
+    return Noise(*np.maximum(noise, rounding).tolist())
+
+
+def _block_noise(band: Array) -> Array:
+    """Mean and variance of the noise (…, 2) of the blocks of a band (height, width,
+    3).
+    """
+    height = band.shape[0] // BLOCK
+    width = band.shape[1] // BLOCK
+    whole = band[: height * BLOCK, : width * BLOCK]
+    blocks = whole.reshape(height, BLOCK, width, BLOCK, 3)
+    # x₋₁ − 2 x₀ + x₁ of independent noise has six times its variance, and none of a
+    # gradient.
+    second = blocks[:, :, :, :-2] - 2 * blocks[:, :, :, 1:-1] + blocks[:, :, :, 2:]
+    variance = (second**2).mean(axis=(1, 3)) / 6
+    return np.stack([blocks.mean(axis=(1, 3)), variance], axis=-1)
 
 
 def fit_noise(level: Array, variance: Array) -> Noise:

@@ -10,7 +10,7 @@ from markupsafe import Markup
 
 from uplift.common.arrays import Array
 from uplift.extras.colour.srgb import hex_codes, to_display_codes
-from uplift.extras.images.exr import blue_slices
+from uplift.extras.images.slices import blue_slices
 from uplift.extras.pages.figure import RAMP, to_page_svg
 from uplift.extras.pages.html import render
 from uplift.extras.pages.marks import error_map, picture

@@ -29,7 +29,7 @@ from uplift.extras.files.outputs import check_folder, make_folder
 from uplift.extras.images import exr_file
 from uplift.extras.images.converter import Converter
 from uplift.extras.images.image import open_image
-from uplift.extras.images.processes import TiedProcesses
+from uplift.extras.processes import TiedProcesses
 from uplift.extras.texture.conversion import SOURCE, Conversion, convert, source_stamp
 from uplift.extras.texture.emission import prepare_lights
 from uplift.extras.texture.encodings import PixelEncoding, Spectrum
@@ -362,7 +362,7 @@ def pending(jobs: Iterable[Job], *, inputs: Iterable[StrPath | None] = ()) -> li
     jobs : iterable of Job
         All jobs.
     inputs : iterable of path-like
-        Files that are read besides those of the jobs.
+        Further files that are read, as well as those of the jobs.
 
     Returns
     -------

@@ -4,7 +4,6 @@ import contextlib
 import json
 from collections.abc import Iterator, Sequence
 from dataclasses import asdict, dataclass, replace
-from functools import cached_property
 from pathlib import Path
 
 import numpy as np
@@ -32,6 +31,7 @@ from uplift.extras.photographs.photograph import Noise, photograph
 from uplift.extras.texture.encodings import (
     Multipliers,
     PixelEncoding,
+    Pixels,
     Sampler,
     Spectrum,
 )
@@ -56,43 +56,22 @@ BY_FIRST = "whose photographs contradict each other: answered by the first alone
 
 @dataclass(frozen=True, eq=False)
 class CubeAnswers:
-    """Numbers of the pixels of photographs by one cube."""
+    """Numbers of the pixels of photographs by one cube.
+
+    ``sample`` answers at the wavelengths of the sensor, and after them at
+    ``wavelengths``, those of the pixels, if they are others.
+    """
 
     photographs: Photographs
     kind: PixelEncoding
+    pixels: Pixels
+    sample: Sampler
+    wavelengths: Array | None
     threads: int
 
     def with_noise(self, noise: Noise) -> "CubeAnswers":
         """Return the same for photographs of another noise."""
         return replace(self, photographs=replace(self.photographs, noise=noise))
-
-    @cached_property
-    def wavelengths(self) -> Array | None:
-        """Wavelengths of pixels that are others than those of the sensor."""
-        stated = getattr(self.kind, "wavelengths", None)
-        return None if stated is None else np.array(stated)
-
-    @cached_property
-    def sample(self) -> Sampler:
-        """Answers of the cube at the wavelengths of the sensor, and after them at those
-        of the pixels.
-        """
-        from uplift.lookup import bulk
-
-        cube = self.photographs.cube
-        at = cube.wavelengths
-        if self.wavelengths is not None:
-            at = np.append(at, self.wavelengths)
-        return bulk.spectra(cube, at, threads=self.threads)
-
-    @property
-    def width(self) -> int:
-        """Numbers of a pixel."""
-        cube = self.photographs.cube
-        if not isinstance(self.kind, Spectrum):
-            return cube.data.model.count
-        at = cube.wavelengths if self.wavelengths is None else self.wavelengths
-        return len(at)
 
     def __call__(self, rgb: Array, others: Array) -> tuple[Floats, Mask]:
         """Numbers (n, N) at linear RGB (n, 3) and those of the further photographs (n,
@@ -110,7 +89,8 @@ class CubeAnswers:
             return self._numbers(rgb[block], answers.spectra)
 
         numbers = np.arange(len(rgb), dtype=float)[:, None]
-        result = blockwise(answer, numbers, self.width, np.float32, self.threads)
+        width = len(self.pixels.channels)
+        result = blockwise(answer, numbers, width, np.float32, self.threads)
         return result, contradicts
 
     def _numbers(self, rgb: Array, spectra: Array) -> Array:
@@ -170,8 +150,7 @@ class SeveralLights(Converter):
                 numbers, flags = _answer(
                     cubes, band.rgb, np.concatenate(others, axis=-1), mixture
                 )
-                if not isinstance(self.cubes[0].kind, Multipliers):
-                    numbers = band.weighted(numbers)
+                numbers = cubes[0].pixels.weighted(numbers, band)
                 errors = [
                     blockwise(estimate, band.rgb.astype(float), 2, np.float32)[..., :1]
                     for estimate in estimates
@@ -194,7 +173,8 @@ def _answer(
     shares = np.ones((len(colours), 1), dtype=np.float32)
     if mixture is not None:
         shares = mixture.reshape(len(colours), -1)
-    numbers = np.zeros((len(colours), cubes[0].width), dtype=np.float32)
+    width = len(cubes[0].pixels.channels)
+    numbers = np.zeros((len(colours), width), dtype=np.float32)
     flags = np.zeros((len(colours), 1), dtype=np.float32)
     for cube, share in zip(cubes, shares.T, strict=True):
         rows = np.flatnonzero(share)
@@ -254,16 +234,7 @@ def prepare_several_lights(
             "no second colour",
             hint="write spectra",
         )
-    cubes = []
-    for uplifter in uplifters:
-        sensor = uplifter.reader.sensor
-        photographs = [
-            photograph(sensor, picture.light, picture.camera, further.balance)
-            for picture in further.pictures
-        ]
-        noise = further.noise or NO_NOISE
-        prepared = prepare_photographs(uplifter.cube, photographs, noise)
-        cubes.append(CubeAnswers(prepared, kind, threads))
+    cubes = [_cube_answers(uplifter, kind, further, threads) for uplifter in uplifters]
     sensor = first.reader.sensor
     description = json.loads(first.header["uplift.texture"])
     description["also"] = asdict(further)
@@ -276,4 +247,26 @@ def prepare_several_lights(
         further=further,
         error_lights=tuple(find_lights(errors, sensor.observer, sensor.range)),
         mask=mask,
+    )
+
+
+def _cube_answers(
+    uplifter: Uplifter, kind: PixelEncoding, further: FurtherPictures, threads: int
+) -> CubeAnswers:
+    from uplift.lookup import bulk
+
+    cube = uplifter.cube
+    photographs = [
+        photograph(cube.data.sensor, picture.light, picture.camera, further.balance)
+        for picture in further.pictures
+    ]
+    stated = getattr(kind, "wavelengths", None)
+    at = cube.wavelengths if stated is None else np.append(cube.wavelengths, stated)
+    return CubeAnswers(
+        photographs=prepare_photographs(cube, photographs, further.noise or NO_NOISE),
+        kind=kind,
+        pixels=uplifter.pixels,
+        sample=bulk.spectra(cube, at, threads=threads),
+        wavelengths=None if stated is None else np.array(stated),
+        threads=threads,
     )

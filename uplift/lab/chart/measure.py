@@ -14,7 +14,7 @@ from uplift.common.arrays import Array, Values
 from uplift.common.progress import Progress, ProgressCallback, ignore_progress
 from uplift.common.text import pluralise
 from uplift.extras.colour.light_sets import CHART_LIGHTS
-from uplift.extras.images.processes import ChildError, call_in_child
+from uplift.extras.processes import ChildError, call_in_child
 from uplift.extras.timing import environment, run_call
 from uplift.lab.chart.call_times import BrokenError, affordable, call_times
 from uplift.lab.chart.results import SUMMARY, Chart, MethodResult, State

@@ -41,7 +41,7 @@ def test_a_plan_is_printed_written_and_built(run, here):
         json.loads(run("plan", "kitchen.toml", "--format", "json", "--force").stdout)
         == values
     )
-    built = run("build", "--plan", "kitchen.plan.json", "-v")
+    built = run("build", "--plan", "kitchen.plan.json")
     assert "kitchen.uplift: " in built.stdout
     data = read(here / "kitchen.uplift")
     assert (data.lattice.dim, data.model.count) == (

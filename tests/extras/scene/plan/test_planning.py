@@ -25,19 +25,6 @@ from uplift.extras.scene.plan.summary import check_path, notes, to_json
 from uplift.extras.texture.scene_colours import Images
 
 
-def test_the_choice_is_the_cheapest_within_the_tolerance(planned):
-    found, _ = planned
-    assert found.within_tolerance
-    assert found.chosen.error.quantile <= found.scene.tolerance
-    sufficient = [
-        each for each in found.measured if each.error.quantile <= found.scene.tolerance
-    ]
-    assert min(
-        each.cost.ranked("balance") for each in sufficient
-    ) == found.chosen.cost.ranked("balance")
-    assert found.chosen in found.front
-
-
 def integrated(reflectances, light):
     shape = colour.SpectralShape(380, 780, 5)
     return (
@@ -54,6 +41,8 @@ def integrated(reflectances, light):
 @pytest.mark.filterwarnings("ignore::uplift.UpliftWarning")
 def test_an_independent_computation_on_every_pixel_agrees(planned, kitchen):
     found, _ = planned
+    assert found.within_tolerance
+    assert found.chosen in found.front
     rgb = painted().reshape(-1, 3).astype(float)
     scene = Images((kitchen.parent / "wood.exr",))
     atlas = kitchen.parent / "macbeth.txt"
@@ -110,15 +99,15 @@ def test_without_a_candidate_the_error_names_what_is_missing(planned):
     )
 
 
-def test_a_tolerance_that_no_candidate_meets_is_refused(tmp_path):
-    with raises(PlanFileError, "no-candidate"):
-        planned_for(tmp_path, np.zeros((20, 20, 3)) + 0.3, limits={"samples": 2})
-
-
 def planned_for(tmp_path, rgb, lights=LIGHTS, **values):
     path = write_exr(tmp_path / "a.exr", planes(np.asarray(rgb, np.float32)))
     scene = plan.SceneFile(tmp_path / "a.toml", (path,), lights=lights, **values)
     return plan.plan(scene, SMALL)
+
+
+def test_a_tolerance_that_no_candidate_meets_is_refused(tmp_path):
+    with raises(PlanFileError, "no-candidate"):
+        planned_for(tmp_path, np.zeros((20, 20, 3)) + 0.3, limits={"samples": 2})
 
 
 def test_a_scene_under_the_light_of_its_space_needs_no_spectra(tmp_path):
@@ -208,29 +197,6 @@ def test_changed_and_missing_sources_are_refused(plan_file):
     assert "wood.exr" in caught.value.problem
 
 
-@pytest.mark.parametrize(
-    "name",
-    [
-        "../kitchen/wood.exr",
-        "a/../../wood.exr",
-        "/etc/passwd",
-        r"C:\wood.exr",
-        r"..\wood.exr",
-    ],
-)
-@pytest.mark.parametrize("key", ["textures", "atlases"])
-def test_sources_outside_the_folder_of_the_plan_are_refused(plan_file, key, name):
-    path, values, write = plan_file
-    values["scene"][key][0]["path"] = name
-    write()
-    with raises(PlanFileError, "invalid-file") as caught:
-        read_plan(path)
-    assert caught.value.problem.startswith(
-        f"scene.{key}[0].path must lie in the folder of this file, got"
-    )
-    assert caught.value.hint
-
-
 def test_a_plan_is_written_where_it_can_be_read(planned, kitchen, tmp_path):
     found = planned[0]
     above = to_json(found, kitchen.parent.parent / "a.plan.json")["scene"]
@@ -279,6 +245,11 @@ def test_a_plan_is_written_where_it_can_be_read(planned, kitchen, tmp_path):
             lambda values: values["scene"]["textures"][0].pop("digest"),
             "invalid-file",
             "scene.textures[0].digest",
+        ),
+        (
+            lambda values: values["scene"]["atlases"][0].update(path="../a.txt"),
+            "invalid-file",
+            "scene.atlases[0].path must lie in the folder",
         ),
     ],
 )

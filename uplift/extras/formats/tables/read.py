@@ -24,6 +24,7 @@ from uplift.extras.formats.quantities import (
     remark_quantity,
 )
 from uplift.extras.formats.samples import Spectrum, is_missing
+from uplift.extras.formats.scales import comma_scales
 from uplift.extras.formats.statements import (
     NANOMETRE,
     PERCENT,
@@ -58,7 +59,6 @@ from uplift.extras.formats.tables.grid import (
     plain_label,
 )
 from uplift.extras.formats.tables.rows import find_samples, headers, spectra_below
-from uplift.extras.formats.tables.thousands import comma_scales
 
 NO_TABLE = "neither an atlas text (no 'Entry ID') nor a table of reflectances"
 

@@ -7,19 +7,15 @@ from numpy.typing import ArrayLike
 
 from uplift.colorimetry import observer
 from uplift.colorimetry.delta_e import lab_jacobian
-from uplift.colorimetry.illuminants import Illuminant
+from uplift.colorimetry.illuminants import Illuminant, black_body
 from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Array
-from uplift.common.errors import OptionError
 
 # luminance to which single colours are exposed, so that dark colours have the weight of
 # bright ones
 MID_GREY = 0.18
-C2 = 1.438776877e7  # second radiation constant in nm K (CODATA 2018)
 MIN_KELVIN = 500.0  # below, a black body has no visible power
 MAX_KELVIN = 1e6  # above, the colour of a black body no longer changes
-# wavelength of unit power before scaling, which keeps all powers near 1
-REFERENCE_NM = 560.0
 
 
 def screen_matrix(sensor: Sensor) -> Array:
@@ -72,14 +68,7 @@ def illuminant(sensor: Sensor, name: Illuminant) -> Array:
 
 def planck(sensor: Sensor, kelvin: float) -> Array:
     """Return the power (N,) of a black body (Bergner, eq. 25), of luminance 1."""
-    if not MIN_KELVIN <= kelvin <= MAX_KELVIN:
-        problem = (
-            f"temperature must be in [{MIN_KELVIN:g}, {MAX_KELVIN:g}] K, got {kelvin:g}"
-        )
-        raise OptionError(problem, hint="give the temperature in kelvin")
-    nm = sensor.wavelengths
-    ratio = np.expm1(C2 / (REFERENCE_NM * kelvin)) / np.expm1(C2 / (nm * kelvin))
-    return _scale(sensor, (REFERENCE_NM / nm) ** 5 * ratio)
+    return _scale(sensor, black_body(kelvin, sensor.wavelengths))
 
 
 def _scale(sensor: Sensor, power: Array) -> Array:

@@ -29,7 +29,7 @@ from uplift.common.errors import PlanFileError, unknown_name
 from uplift.common.files import file_digest
 from uplift.common.progress import ProgressCallback, ignore_progress
 from uplift.common.text import format_value
-from uplift.extras.emission.spec_lights import light_in_folder
+from uplift.extras.emission.lamps import find_light, is_illuminant, lamp_file
 from uplift.extras.files.spec import (
     SPEC,
     FolderPath,
@@ -84,7 +84,17 @@ def _find_files(names: Any, info: ValidationInfo) -> tuple[Path, ...]:
 
 def _find_lights(names: Any, info: ValidationInfo) -> tuple[Illuminant, ...]:
     """Return each light once, with lamps read from the folder of the scene file."""
-    lights = [light_in_folder(name, info, number) for number, name in _listed(names)]
+    folder = spec_folder(info)
+    lights = list[Illuminant]()
+    for number, name in _listed(names):
+        text = str(folder.path / check_inside(name, number))
+        file = lamp_file(text)
+        with looking_up(number):
+            if is_illuminant(name) or not os.path.lexists(file):
+                lights.append(observer.light(name).name)
+            else:
+                folder.opened.append(Path(file))
+                lights.append(find_light(text))
     with looking_up():
         observer.check_distinct(lights)
     return tuple(dict.fromkeys(lights))

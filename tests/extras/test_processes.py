@@ -10,7 +10,7 @@ import time
 import pytest
 
 from uplift.common.errors import OptionError
-from uplift.extras.images.processes import ChildError, TiedProcesses, call_in_child
+from uplift.extras.processes import ChildError, TiedProcesses, call_in_child
 
 
 def raise_error(text):
