@@ -135,7 +135,7 @@ def recorded_atlas(
     def handle(warning: UpliftWarning) -> None:
         if warning.code == "atlas-changed":
             raise CubeFileError(
-                warning.problem, code=warning.code, path=path, hint=SEARCH
+                warning.problem, code="atlas-changed", path=path, hint=SEARCH
             )
         warn(warning)
 
