@@ -70,7 +70,7 @@ def command(
     from uplift.extras.colour.light_sets import REPORT_LIGHTS
     from uplift.extras.report.assessment import assess
     from uplift.extras.report.page import render_report
-    from uplift.extras.report.rebuild import recorded_atlas, recorded_files
+    from uplift.extras.report.rebuild import recorded_atlas
     from uplift.lookup.cube import find_file, load
 
     path = output
@@ -78,9 +78,10 @@ def command(
         path = output or f"{Path(cube).stem}.html"
         check_figure_page(path)
     loaded = load(cube)
-    recorded = () if files else recorded_files(loaded.data, cube, folders)
-    check_outputs(path, inputs=recorded)
     atlas = read_atlas(*files) if files else recorded_atlas(loaded.data, cube, folders)
+    check_outputs(
+        path, inputs=() if atlas is None else {entry.path for entry in atlas.entries}
+    )
     with progress_bar("evaluating the cube"):
         size = Path(find_file(cube)).stat().st_size
         assessment = assess(

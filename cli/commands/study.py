@@ -3,7 +3,6 @@
 from collections.abc import Mapping, Sequence
 from functools import partial
 from itertools import product
-from pathlib import Path
 from typing import Any
 
 import click
@@ -289,7 +288,7 @@ def sensitivity(
     enable_jit_cache()
     from uplift.colorimetry import observer
     from uplift.extras.colour.light_sets import NARROW_BAND_LIGHT
-    from uplift.extras.report.rebuild import recorded_atlas, recorded_files
+    from uplift.extras.report.rebuild import recorded_atlas
     from uplift.lab.chart.selection import perturb_method, select_methods
     from uplift.lab.study.sensitivity import perturb, perturb_atlas
     from uplift.lookup.cube import load
@@ -297,17 +296,19 @@ def sensitivity(
     others = select_methods(methods) if methods else ()
     loaded = load(cube)
     data = loaded.data
-    recorded: tuple[Path, ...] = ()
     atlas = None
     if cube is not None and entries:
-        recorded = recorded_files(data, cube, folders)
         atlas = recorded_atlas(data, cube, folders)
     if output is not None and atlas is None:
         raise click.UsageError(
             "--output draws the effect of entries: it needs a CUBE with an atlas, and "
             "--entries."
         )
-    check_folder(output, SENSITIVITY_PLOTS, inputs=recorded)
+    check_folder(
+        output,
+        SENSITIVITY_PLOTS,
+        inputs=() if atlas is None else {entry.path for entry in atlas.entries},
+    )
     of_methods = []
     for method in others:
         of_methods += perturb_method(method, observer.light(NARROW_BAND_LIGHT))

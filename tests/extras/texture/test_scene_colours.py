@@ -110,5 +110,5 @@ def test_all_images_of_a_scene_are_read_and_decoded(plain_cube, tmp_path):
 def test_rebuild_needs_no_images(scene_cube):
     again = rebuild(scene_cube, "photo.uplift", [ATLASES])
     assert digest(again.data) == digest(scene_cube.data)
-    assert compare_rebuilt("photo.uplift", scene_cube.data, again.data).failures == ()
+    assert compare_rebuilt("photo.uplift", scene_cube.data, again.data).failures == []
     assert again.data.provenance["scene"][0]["name"] == PHOTO.name

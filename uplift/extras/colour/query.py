@@ -167,7 +167,7 @@ def locate_xyz(cube: Cube, xyz: ArrayLike) -> tuple[Array, Array, Mask]:
 
 @dataclass(frozen=True, eq=False)
 class _Lookup:
-    """A cube, and what is asked of it."""
+    """A cube, and how colours are looked up in it."""
 
     cube: Cube
     wavelengths: Array

@@ -44,7 +44,7 @@ MIN_STEP = 1e-4
 @dataclass(frozen=True, eq=False)
 class Assessment:
     """Quality of one cube: values for JSON, where numbers that are not finite are None,
-    and the spectra of which they tell.
+    and the spectra that they summarise.
     """
 
     data: CubeData

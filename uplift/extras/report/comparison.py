@@ -1,7 +1,7 @@
 """Answers compared with those expected: ΔE00 under lights, and spectra.
 
-Reports, checks, diffs and the conformance of other programs differ in what they ask and
-in how they state it; the comparison itself is this one.
+Reports, checks, diffs and the conformance of other programs query other colours and
+state other limits; all of them compare by these functions.
 """
 
 from collections.abc import Iterable, Sequence

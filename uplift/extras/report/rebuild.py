@@ -2,7 +2,7 @@
 
 import os
 import warnings
-from collections.abc import Sequence, Set
+from collections.abc import Callable, Sequence, Set
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
@@ -36,16 +36,6 @@ REBUILD = "build the cube again"
 """Hint for cubes whose build cannot be repeated."""
 SEARCH = "pass the folder that contains it, or build the cube again"
 """Hint for atlases that are missing or have changed."""
-
-
-@dataclass(frozen=True)
-class RecordedFile:
-    """A file that a cube recorded, with a warning if it has another content, or is a
-    shipped atlas of another name.
-    """
-
-    path: Path
-    warning: UpliftWarning | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,7 +72,7 @@ def rebuild(
     """Build a cube, read from ``path``, again. Warnings of the first build are not
     repeated.
 
-    Atlas files are searched as by `recorded_files`. A file that has changed is used,
+    Atlas files are searched as by `recorded_atlas`. A file that has changed is used,
     with the `UpliftWarning` ``atlas-changed``. A cube of an earlier version of uplift
     gives the `UpliftWarning` ``older-version``. Raises `CubeFileError` if the cube does
     not record its options, was filled from another cube, or an atlas file is missing.
@@ -94,8 +84,6 @@ def rebuild(
             path=path,
             hint="rebuild the cube that was filled",
         )
-    atlases = _find_all(stored.data, path, "atlases", folders)
-    libraries = _find_all(stored.data, path, "libraries", folders)
     writer = stored.data.provenance.get("uplift", "")
     if is_older(writer, version()):
         problem = (
@@ -103,11 +91,9 @@ def rebuild(
             f"{version()}"
         )
         warn(UpliftWarning(problem, code="older-version", path=path))
-    for file in (*atlases, *libraries):
-        if file.warning:
-            warn(file.warning)
+    atlases = _find_all(stored.data, path, "atlases", folders, warn)
+    library = tuple(_find_all(stored.data, path, "libraries", folders, warn))
     atlas = _read(stored.data, atlases)
-    library = tuple(file.path for file in libraries)
     scene = StoredScene(stored.data) if "scene" in stored.data.provenance else None
     given = asdict(options) | {"lights": options.lights}
     sensor = stored.data.sensor
@@ -137,69 +123,52 @@ def recorded_atlas(
     data: CubeData, path: StrPath, folders: Sequence[StrPath] = ()
 ) -> Atlas | None:
     """Read the atlas that a cube, read from ``path``, was built from; None for a cube
-    without one.
-
-    The files are those of `recorded_files`. Warnings of the build are not repeated. A
-    shipped atlas of another name gives the `UpliftWarning` ``shipped-atlas``.
-    """
-    files = _unchanged_files(data, path, folders)
-    for file in files:
-        if file.warning:
-            warn(file.warning)
-    return _read(data, files)
-
-
-def recorded_files(
-    data: CubeData, path: StrPath, folders: Sequence[StrPath] = ()
-) -> tuple[Path, ...]:
-    """Find the files of the atlas that a cube, read from ``path``, was built from.
+    without one. Warnings of the build are not repeated.
 
     The first file of the recorded name decides, in ``folders``, in the folder of the
     cube, and in folders ``atlases`` in these. Where there is none, a shipped atlas of
-    the recorded content counts. A recorded name never opens a file elsewhere. Raises
-    `CubeFileError` if the cube does not record its atlas, or a file is missing or has
-    changed.
+    the recorded content counts, with the `UpliftWarning` ``shipped-atlas`` if it has
+    another name. A recorded name never opens a file elsewhere. Raises `CubeFileError`
+    if the cube does not record its atlas, or a file is missing or has changed.
     """
-    return tuple(file.path for file in _unchanged_files(data, path, folders))
 
-
-def _unchanged_files(
-    data: CubeData, path: StrPath, folders: Sequence[StrPath]
-) -> list[RecordedFile]:
-    """Find the files of the atlas of a cube; raise `CubeFileError` for one that has
-    changed.
-    """
-    files = _find_all(data, path, "atlases", folders)
-    for file in files:
-        if file.warning and file.warning.code == "atlas-changed":
+    def handle(warning: UpliftWarning) -> None:
+        if warning.code == "atlas-changed":
             raise CubeFileError(
-                file.warning.problem, code="atlas-changed", path=path, hint=SEARCH
+                warning.problem, code="atlas-changed", path=path, hint=SEARCH
             )
-    return files
+        warn(warning)
+
+    return _read(data, _find_all(data, path, "atlases", folders, handle))
 
 
-def _read(data: CubeData, files: Sequence[RecordedFile]) -> Atlas | None:
+def _read(data: CubeData, files: Sequence[Path]) -> Atlas | None:
     """Read the recorded atlas from its files."""
     atlases = list[Atlas]()
     for file, source in zip(files, data.provenance["atlases"], strict=True):
         options = {key: source[key] for key in ("measured", "missing") if key in source}
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", UpliftWarning)
-            atlases.append(read_atlas(file.path, **options))
+            atlases.append(read_atlas(file, **options))
     return merge(atlases) if atlases else None
 
 
+Handler = Callable[[UpliftWarning], None]
+"""What is done about a file that has another content, or a shipped atlas of another
+name.
+"""
+
+
 def _find_all(
-    data: CubeData, path: StrPath, kind: str, folders: Sequence[StrPath]
-) -> list[RecordedFile]:
+    data: CubeData, path: StrPath, kind: str, folders: Sequence[StrPath], warn: Handler
+) -> list[Path]:
     """Find the recorded files of a kind. Only a plain name is searched in folders, no
     path on any system.
     """
     if kind == "atlases" and kind not in data.provenance:
         raise _missing_provenance(path)
-    roots = [*map(Path, folders), Path(path).resolve().parent]
-    searched = []
-    for root in roots:
+    searched = list[Path]()
+    for root in (*map(Path, folders), Path(path).resolve().parent):
         searched += [root, root / "atlases"]
     sources = data.provenance.get(kind, ())
     # Files of one name in two folders may both be recorded.
@@ -208,15 +177,11 @@ def _find_all(
     for source in sources:
         name = source["name"]
         digest = source["digest"]
-        is_plain = not set(name) & set("/\\:")
-        named = [
-            folder / name
-            for folder in searched
-            if is_plain and os.path.isfile(folder / name)
-        ]
-        file = _first_of_name(path, named, digest, digests - {digest}) or _shipped(
-            path, name, digest
-        )
+        named = list[Path]()
+        if not set(name) & set("/\\:"):
+            named = [folder / name for folder in searched]
+        file = _first_of_name(path, named, digest, digests - {digest}, warn)
+        file = file or _shipped(path, name, digest, warn)
         if file is None:
             raise CubeFileError(
                 f"its atlas '{name}' was not found",
@@ -229,35 +194,31 @@ def _find_all(
 
 
 def _first_of_name(
-    path: StrPath, named: Sequence[Path], digest: str, others: Set[str]
-) -> RecordedFile | None:
+    path: StrPath, named: Sequence[Path], digest: str, others: Set[str], warn: Handler
+) -> Path | None:
     """Return the first file whose content is not one of the ``others``."""
-    for file in named:
+    for file in filter(os.path.isfile, named):
         content = read_document(file).digest
-        if content == digest:
-            return RecordedFile(file)
         if content not in others:
-            problem = f"its atlas '{file.name}' has changed ({file})"
-            return RecordedFile(
-                file, UpliftWarning(problem, code="atlas-changed", path=path)
-            )
+            if content != digest:
+                problem = f"its atlas '{file.name}' has changed ({file})"
+                warn(UpliftWarning(problem, code="atlas-changed", path=path))
+            return file
     return None
 
 
-def _shipped(path: StrPath, name: str, digest: str) -> RecordedFile | None:
+def _shipped(path: StrPath, name: str, digest: str, warn: Handler) -> Path | None:
     """Return the shipped atlas of a content."""
     atlas = next((atlas for atlas in shipped_atlases() if atlas.digest == digest), None)
     if atlas is None:
         return None
-    if atlas.path.name == name:
-        return RecordedFile(atlas.path)
-    problem = (
-        f"its atlas '{name}' was not found; the shipped atlas '{atlas.name}' has its "
-        "content"
-    )
-    return RecordedFile(
-        atlas.path, UpliftWarning(problem, code="shipped-atlas", path=path)
-    )
+    if atlas.path.name != name:
+        problem = (
+            f"its atlas '{name}' was not found; the shipped atlas '{atlas.name}' has "
+            "its content"
+        )
+        warn(UpliftWarning(problem, code="shipped-atlas", path=path))
+    return atlas.path
 
 
 def _read_options(data: CubeData, path: StrPath) -> Options:
