@@ -25,6 +25,11 @@ MIXTURE_MAPPING = "scale"
 """How mixtures are mapped into the gamut: it keeps the hue of bright ones."""
 
 
+def coloured(code: str) -> Any:
+    """Return a cell with the code of a colour and a patch of it."""
+    return swatch(code, code)
+
+
 def plot_ramp(mixture: Mixture, cube: Cube, path: str, *, force: bool) -> None:
     from uplift.extras.colour.srgb import to_display_codes
     from uplift.extras.pages.plots import plot_strips
@@ -91,10 +96,7 @@ def print_theories(recipe: Recipe, cube: Cube, method: str, style: str) -> None:
         colour = map_to_gamut(mixed, sensor, method).rgb[0]
         rows.append({"theory": title, **_colour(cube, colour)})
     headings = {"theory": "theory", "hex": "hex", "rgb": "linear RGB"}
-    formats: dict[str, Format] = {
-        "hex": lambda code: swatch(code, code),
-        "rgb": ".6f",
-    }
+    formats: dict[str, Format] = {"hex": coloured, "rgb": ".6f"}
     table = Table(rows, headings, formats=formats)
     if style == "json":
         print_json({"names": recipe.names, "theories": rows}, indent=None)

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Any
 
 from uplift.common.text import pluralise
 
-from .mixtures import MIXTURE_MAPPING
+from .mixtures import MIXTURE_MAPPING, coloured
 from .output.console import paragraph, print_fields, print_json, say
-from .output.table import Format, Table, swatch
+from .output.table import Format, Table
 
 if TYPE_CHECKING:
     from uplift.common.arrays import Array
@@ -25,11 +25,6 @@ REACHED = 1.0
 """ΔE00 up to which a recipe is a match."""
 PROVEN = 2
 """Paints of a recipe up to which no better parts exist."""
-
-
-def coloured(code: str) -> Any:
-    """Return a cell with the code of a colour and a patch of it."""
-    return swatch(code, code)
 
 
 def hex_codes(paints: Paints, reflectance: Array) -> list[str]:
@@ -48,16 +43,13 @@ def paint_fields(paints: Paints) -> dict[str, Any]:
     import numpy as np
 
     colours = hex_codes(paints, paints.reflectance(np.eye(len(paints))))
-    columns = dict(vars(paints.pigments))
-    if paints.errors is not None:
-        columns |= {f"{key}_errors": rows for key, rows in vars(paints.errors).items()}
     rows = []
-    for row, name in enumerate(paints.names):
-        fields: dict[str, Any] = {"name": name, "colour": colours[row]}
-        fields |= {key: values[row].tolist() for key, values in columns.items()}
-        if paints.prices and np.isfinite(paints.prices[row]):
-            fields["price"] = paints.prices[row]
-        rows.append(fields)
+    for colour, row in zip(colours, paints.rows(), strict=True):
+        values = {
+            key: value.tolist() if isinstance(value, np.ndarray) else value
+            for key, value in row.items()
+        }
+        rows.append({"colour": colour, **values})
     return {
         "wavelengths": paints.wavelengths.tolist(),
         "surface": asdict(paints.surface),

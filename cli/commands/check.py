@@ -192,7 +192,7 @@ def _rebuild_all(
 def _check(file: str, folders: Sequence[str], progress: ProgressCallback) -> _Check:
     """Rebuild a cube and compare the two."""
     from uplift.extras.report.rebuild import rebuild
-    from uplift.extras.report.regression import compare_rebuilt
+    from uplift.extras.report.regression import RebuildDifference, compare_rebuilt
     from uplift.lookup.cube import load
 
     rebuilt = comparison = error = None
@@ -207,7 +207,8 @@ def _check(file: str, folders: Sequence[str], progress: ProgressCallback) -> _Ch
             comparison = compare_rebuilt(Path(file), stored.data, rebuilt.data)
         except UpliftError as cause:
             error = cause
-    failures = list(comparison.failures) if comparison else []
+    found = comparison or RebuildDifference()
+    failures = found.failures
     changed = [note.problem for note in notes if note.code == "atlas-changed"]
     others = [note.problem for note in notes if note.code != "atlas-changed"]
     if comparison and not failures:
@@ -221,20 +222,13 @@ def _check(file: str, folders: Sequence[str], progress: ProgressCallback) -> _Ch
         "cube": str(Path(file)),
         "passed": not failures,
         "failures": failures,
-        "measures": {},
-        "status": {},
+        "measures": found.measures,
+        "status": found.status,
         "atlas_changed": changed,
         "notes": others,
-        "entries": [],
+        "entries": list(map(asdict, found.entries)),
         "error": error_object(error) if error else None,
     }
-    if comparison:
-        record["measures"] = comparison.measures
-        record["status"] = {
-            "stored": comparison.stored_counts,
-            "rebuilt": comparison.rebuilt_counts,
-        }
-        record["entries"] = list(map(asdict, comparison.entries))
     return _Check(record, rebuilt, error)
 
 

@@ -17,6 +17,9 @@ from ..output.progress import progress_bar
 from ..output.table import Table, print_result
 from ..outputs import check_outputs
 
+WORST = 5
+"""Number of the worst colours of each set that are named and drawn."""
+
 
 @click.command(
     "diff",
@@ -42,12 +45,6 @@ from ..outputs import check_outputs
     help="Largest ΔE00 that is accepted: the exit code is 1 if a colour differs by "
     "more, if one cube alone lacks a colour, or if entries were added or removed."
 )
-@click.option(
-    "--worst",
-    type=options.Whole(0),
-    default=5,
-    help="Number of worst colours of each set.",
-)
 @options.pixels()
 @options.output(
     help="HTML page with pictures of where the cubes differ.", type=options.FIGURE_PAGE
@@ -60,7 +57,6 @@ def command(
     images: tuple[str, ...],
     lights: tuple[Illuminant, ...],
     tolerance: float | None,
-    worst: int,
     output: str | None,
     style: str,
     force: bool,
@@ -88,8 +84,8 @@ def command(
         if output is not None:
             from uplift.extras.report.diff_page import render_diff
 
-            write_text(render_diff(difference, pictures, worst), output, force=force)
-    figures = to_json(difference, tolerance, worst)
+            write_text(render_diff(difference, pictures, WORST), output, force=force)
+    figures = to_json(difference, tolerance, WORST)
     _print(figures, style)
     if output is not None and style != "json":
         say(f"{output}: where they differ")

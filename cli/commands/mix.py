@@ -186,7 +186,6 @@ def command(
 ) -> None:
     import numpy as np
 
-    from uplift.extras.paint.coats import Dyes
     from uplift.extras.paint.mixture import (
         SpectrumResolver,
         display_mixture,
@@ -236,9 +235,7 @@ def command(
 
     def coat(amounts: Sequence[float] | Array) -> Coat:
         law = _scattering_law(scattering, cube.data.sensor, further)
-        components = recipe.components(law)
-        if isinstance(components, Dyes) and plate is not None:
-            return components.plate(amounts, thickness, stated)
+        components = recipe.components(law, in_plate=plate is not None)
         return components.coat(amounts, thickness, stated)
 
     if over is not None and output is not None:

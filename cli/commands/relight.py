@@ -27,6 +27,8 @@ from ..startup import enable_jit_cache
 
 if TYPE_CHECKING:
     from uplift.colorimetry.illuminants import Illuminant
+    from uplift.extras.images.converter import Converter
+    from uplift.extras.images.picture import Picture
     from uplift.extras.relight.relight import Relit
     from uplift.lookup.cube import Cube
 
@@ -123,68 +125,66 @@ def command(
     files: Sequence[str],
     output: str,
     style: str,
-    **settings: Any,
+    adapt: bool | None,
+    force: bool,
+    **reading: Any,
 ) -> None:
     enable_jit_cache()
     from uplift.extras.colour.light_sets import RELIGHT_LIGHTS
+    from uplift.lookup.cube import load
+    from uplift.samples import sample_path
 
     if cube_path is not None and files:
         raise click.UsageError(
             "--cube and --atlas are alternatives: give one of the two."
         )
     is_image = Path(output).suffix.lower() == IMAGE
-    paths = _input_paths(images, is_image)
-    check_outputs(output, inputs=paths)
-    atlases = files
-    if not images and cube_path is None:
-        atlases = files or (SAMPLE_ATLAS,)
-    write = _write_image if is_image else _write_pictures
-    lights = lights or RELIGHT_LIGHTS
-    extra, notes = write(paths, cube_path, atlases, lights, output, style, **settings)
-    if extra is not None and files:
-        print_notes(extra, notes, err=style == "json")
-
-
-def _input_paths(images: Sequence[str], is_image: bool) -> list[str]:
-    from uplift.samples import sample_path
-
     paths = expand_patterns(images) or [str(sample_path(SAMPLE))]
     if is_image and len(paths) > 1:
         raise click.UsageError(
             "An .exr file holds one image: relight images one by one."
         )
-    return paths
+    check_outputs(output, inputs=paths)
+    atlases = files
+    if not images and cube_path is None:
+        atlases = files or (SAMPLE_ATLAS,)
+    pictures = []
+    if not is_image:
+        pictures = read_pictures(paths, load(cube_path).data.sensor, **reading)
+    with progress_bar("computing spectra"):
+        own, notes = _cube_of_user(cube_path, atlases)
+    lights = lights or RELIGHT_LIGHTS
+    if is_image:
+        converter = _relighter(own or load(), lights, adapt=adapt, **reading)
+        _write_image(converter, paths[0], output, style, force=force)
+    else:
+        stems = [Path(path).stem for path in atlases or [cube_path or ""]]
+        cubes = _shown_cubes(own, f"{SPECTRAL} with {', '.join(stems)}")
+        relit = _relight_all(paths, pictures, cubes, lights)
+        _write_pictures(relit, output, adapt=adapt, force=force)
+        _print_differences(relit, output, style)
+    if own is not None and files:
+        print_notes(own, notes, err=style == "json")
+
+
+def _relighter(
+    cube: Cube, lights: Sequence[Illuminant], *, adapt: bool | None, **reading: Any
+) -> Converter:
+    from uplift.extras.relight.relighter import prepare_relighter
+
+    whitens = adapt is not False
+    cores = os.cpu_count() or 1
+    return prepare_relighter(cube, lights, adapt=whitens, threads=cores, **reading)
 
 
 def _write_image(
-    paths: Sequence[str],
-    cube_path: str | None,
-    atlases: Sequence[str],
-    lights: Sequence[Illuminant],
-    output: str,
-    style: str,
-    *,
-    adapt: bool | None,
-    force: bool,
-    **pixels: Any,
-) -> tuple[Cube | None, list[UpliftWarning]]:
-    """Relight an image at full size, and return the user's cube with its warnings."""
-    from uplift.extras import texture
-    from uplift.extras.relight.relighter import prepare_relighter
-    from uplift.lookup.cube import load
+    converter: Converter, path: str, output: str, style: str, *, force: bool
+) -> None:
+    """Relight an image at full size."""
+    from uplift.extras.texture.conversion import convert
 
     with progress_bar("computing spectra") as progress:
-        extra, notes = _cube_of_user(cube_path, atlases)
-        converter = prepare_relighter(
-            extra or load(),
-            lights,
-            adapt=adapt is not False,
-            threads=os.cpu_count() or 1,
-            **pixels,
-        )
-        conversion = texture.convert(
-            converter, paths[0], output, force=force, progress=progress
-        )
+        conversion = convert(converter, path, output, force=force, progress=progress)
     warn(conversion.warnings)
     shown = json.loads(converter.header["uplift.texture"])["lights"]
     count = conversion.counts.pixels
@@ -192,38 +192,38 @@ def _write_image(
         print_json({"output": output, "lights": shown, "pixels": count})
     else:
         facts = f"{', '.join(shown)}, {pluralise(count, 'pixel')}"
-        paragraph(f"{output}: {Path(paths[0]).name} under {facts}")
-    return extra, notes
+        paragraph(f"{output}: {Path(path).name} under {facts}")
 
 
-def _write_pictures(
-    paths: Sequence[str],
-    cube_path: str | None,
-    atlases: Sequence[str],
-    lights: Sequence[Illuminant],
-    output: str,
-    style: str,
-    *,
-    adapt: bool | None,
-    force: bool,
-    **pixels: Any,
-) -> tuple[Cube | None, list[UpliftWarning]]:
-    """Write a figure or page, and return the user's cube with its warnings."""
-    from uplift.common.files import write_text
-    from uplift.extras.relight.relight import relight, relit_page, write_relit_sheet
+def _shown_cubes(own: Cube | None, name: str) -> dict[str, Cube]:
+    """Return the packaged cube, and the user's by its name if there is one, which
+    stands alone if it has other settings.
+    """
     from uplift.lookup.cube import load
 
+    packaged = load()
+    if own is None:
+        return {SPECTRAL: packaged}
+    is_alike = _setting(own) == _setting(packaged)
+    return {SPECTRAL: packaged, name: own} if is_alike else {name: own}
+
+
+def _setting(cube: Cube) -> tuple[str, str, str]:
+    """Return what cubes that are compared must have in common."""
+    sensor = cube.data.sensor
+    return sensor.space, sensor.illuminant, sensor.observer
+
+
+def _relight_all(
+    paths: Sequence[str],
+    pictures: Sequence[Picture],
+    cubes: dict[str, Cube],
+    lights: Sequence[Illuminant],
+) -> list[Relit]:
+    from uplift.extras.relight.relight import relight
+
     with progress_bar("computing spectra"):
-        packaged = load()
-        pictures = read_pictures(paths, load(cube_path).data.sensor, **pixels)
-        extra, notes = _cube_of_user(cube_path, atlases)
-        cubes = {}
-        if extra is None or _setting(extra) == _setting(packaged):
-            cubes[SPECTRAL] = packaged
-        if extra is not None:
-            stems = [Path(path).stem for path in atlases or [cube_path or ""]]
-            cubes[f"{SPECTRAL} with {', '.join(stems)}"] = extra
-        relit = [
+        return [
             relight(
                 Path(path).name,
                 picture.rgb,
@@ -235,18 +235,19 @@ def _write_pictures(
             )
             for path, picture in zip(paths, pictures, strict=True)
         ]
-        if Path(output).suffix.lower() == PAGE:
-            write_text(relit_page(relit, adapt=adapt), output, force=force)
-        else:
-            write_relit_sheet(relit, output, adapt=adapt, force=force)
-    _print_differences(relit, output, style)
-    return extra, notes
 
 
-def _setting(cube: Cube) -> tuple[str, str, str]:
-    """Return what cubes that are compared must have in common."""
-    sensor = cube.data.sensor
-    return sensor.space, sensor.illuminant, sensor.observer
+def _write_pictures(
+    relit: Sequence[Relit], output: str, *, adapt: bool | None, force: bool
+) -> None:
+    """Write a figure or page."""
+    from uplift.common.files import write_text
+    from uplift.extras.relight.relight import relit_page, write_relit_sheet
+
+    if Path(output).suffix.lower() == PAGE:
+        write_text(relit_page(relit, adapt=adapt), output, force=force)
+    else:
+        write_relit_sheet(relit, output, adapt=adapt, force=force)
 
 
 def _print_differences(relit: Sequence[Relit], output: str, style: str) -> None:

@@ -98,6 +98,7 @@ def test_textures(run, home):
 def test_programs(run, misuse, home):
     assert run("lights export -o lights.h").output.startswith("lights.h: ")
     assert "lights_power" in (home / "lights.h").read_text()
+    assert "in b.bin" in run("lights export -o b.h --table file").output
     assert ".glsl" in misuse("lights export -o lights.wgsl")
 
 

@@ -11,7 +11,7 @@ from numpy.testing import assert_allclose
 
 from uplift.colorimetry import observer
 from uplift.colorimetry.delta_e import delta_e_2000, delta_e_2000_terms, lab, lab_to_xyz
-from uplift.extras.colour.dominant import GREY, dominant_wavelength
+from uplift.extras.colour.dominant import dominant_wavelengths
 
 PAIRS = np.loadtxt(
     Path(__file__).parents[1] / "reference" / "ciede2000_sharma2005.csv",
@@ -56,9 +56,11 @@ def test_spectral_colours_and_their_tints(name):
         pure = sensor.cmfs[list(sensor.wavelengths).index(wavelength)]
         tint = pure / pure.sum() + 2 * sensor.light.white / sensor.light.white.sum()
         for colour_, purity in ((pure, 1), (tint, 1 / 3)):
-            found = dominant_wavelength(colour_, sensor)
-            assert found.wavelength == pytest.approx(wavelength, abs=1e-6)
-            assert (found.complementary, found.purity) == (False, pytest.approx(purity))
+            [found], [is_complement], [pure_] = dominant_wavelengths(
+                colour_[None], sensor
+            )
+            assert found == pytest.approx(wavelength, abs=1e-6)
+            assert (is_complement, pure_) == (False, pytest.approx(purity))
 
 
 def test_dominant_wavelengths_agree_with_colour_science(sensor):
@@ -71,17 +73,19 @@ def test_dominant_wavelengths_agree_with_colour_science(sensor):
         if np.hypot(*(xy - white)) < 0.02:
             continue
         theirs, *_ = colour.dominant_wavelength(xy, white)
-        found = dominant_wavelength(xyz, sensor)
-        kinds.add(found.complementary)
-        assert found.complementary == (theirs < 0)
-        assert found.wavelength == pytest.approx(abs(float(theirs)), abs=1.0)
-        if not found.complementary:
-            assert found.purity == pytest.approx(
-                colour.excitation_purity(xy, white), abs=5e-3
-            )
+        [found], [is_complement], [purity] = dominant_wavelengths(xyz[None], sensor)
+        kinds.add(bool(is_complement))
+        assert is_complement == (theirs < 0)
+        assert found == pytest.approx(abs(float(theirs)), abs=1.0)
+        if not is_complement:
+            expected = colour.excitation_purity(xy, white)
+            assert purity == pytest.approx(expected, abs=5e-3)
     assert kinds == {True, False}
 
 
 def test_greys_and_black_have_no_dominant_wavelength(sensor):
-    for xyz in (np.zeros(3), np.full(3, -1.0), 0.3 * sensor.light.white):
-        assert dominant_wavelength(xyz, sensor) == GREY
+    xyz = np.array([np.zeros(3), np.full(3, -1.0), 0.3 * sensor.light.white])
+    wavelengths, complementary, purity = dominant_wavelengths(xyz, sensor)
+    assert np.isnan(wavelengths).all()
+    assert not complementary.any()
+    assert not purity.any()

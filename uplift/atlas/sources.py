@@ -309,12 +309,12 @@ def shipped_atlases() -> tuple[ShippedAtlas, ...]:
         header = art.read_header(document)
         atlases.append(
             ShippedAtlas(
-                name,
-                header.content,
-                header.copyright,
-                header.licence,
-                path,
-                document.digest,
+                name=name,
+                content=header.content,
+                source=header.copyright,
+                licence=header.licence,
+                path=path,
+                digest=document.digest,
             )
         )
     return tuple(atlases)

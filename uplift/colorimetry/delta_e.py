@@ -124,11 +124,8 @@ def delta_e_2000(lab_1: ArrayLike, lab_2: ArrayLike) -> Array:
     2.0425
     """
     delta_l, delta_c, delta_h, rotation = _differences(lab_1, lab_2)
-    return np.sqrt(
-        np.maximum(
-            delta_l**2 + delta_c**2 + delta_h**2 + rotation * delta_c * delta_h, 0
-        )
-    )
+    square = delta_l**2 + delta_c**2 + delta_h**2 + rotation * delta_c * delta_h
+    return np.sqrt(np.maximum(square, 0))
 
 
 def delta_e_2000_terms(lab_1: ArrayLike, lab_2: ArrayLike) -> Array:
@@ -173,21 +170,12 @@ def _differences(lab_1: ArrayLike, lab_2: ArrayLike) -> tuple[Array, ...]:
     tone = sum(terms, start=np.ones_like(hue))
     # Differences over S_L, S_C and S_H, and the rotation R_T for blues (eq. 8–11 and
     # 15–22).
-    delta_l = (l2 - l1) / (
-        1 + 0.015 * (light - 50) ** 2 / np.sqrt(20 + (light - 50) ** 2)
-    )
+    delta_l = (l2 - l1) / _lightness_scale(light)
     delta_c = (c2 - c1) / (1 + 0.045 * chroma)
-    delta_h = (
-        2
-        * np.sqrt(c1 * c2)
-        * np.sin(np.radians(turn / 2))
-        / (1 + 0.015 * chroma * tone)
-    )
-    rotation = (
-        -2
-        * _weight_7(chroma)
-        * np.sin(np.radians(60 * np.exp(-(((hue - 275) / 25) ** 2))))
-    )
+    chord = 2 * np.sqrt(c1 * c2) * np.sin(np.radians(turn / 2))
+    delta_h = chord / (1 + 0.015 * chroma * tone)
+    turned = np.radians(60 * np.exp(-(((hue - 275) / 25) ** 2)))
+    rotation = -2 * _weight_7(chroma) * np.sin(turned)
     return delta_l, delta_c, delta_h, rotation
 
 
@@ -205,9 +193,7 @@ def delta_e_2000_weights(lab: ArrayLike) -> Array:
     chroma_weight = 1 / (1 + 0.045 * chroma)
     hue_weight = 1 / (1 + 0.015 * chroma)
     weights = np.zeros((*light.shape, 3, 3))
-    weights[..., 0, 0] = 1 / (
-        1 + 0.015 * (light - 50) ** 2 / np.sqrt(20 + (light - 50) ** 2)
-    )
+    weights[..., 0, 0] = 1 / _lightness_scale(light)
     weights[..., 1, 1] = chroma_weight * np.cos(hue)
     weights[..., 1, 2] = chroma_weight * np.sin(hue)
     weights[..., 2, 1] = -hue_weight * np.sin(hue)
@@ -265,6 +251,11 @@ def delta_e_rgb(sensor: Sensor, first: ArrayLike, second: ArrayLike) -> Array:
     ndarray, shape (...)
     """
     return delta_e_2000(rgb_to_lab(sensor, first), rgb_to_lab(sensor, second))
+
+
+def _lightness_scale(light: Array) -> Array:
+    """S_L (Sharma et al. 2005, eq. 15)."""
+    return 1 + 0.015 * (light - 50) ** 2 / np.sqrt(20 + (light - 50) ** 2)
 
 
 def _weight_7(chroma: Array) -> Array:

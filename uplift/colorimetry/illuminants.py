@@ -5,6 +5,7 @@ Temperatures such as 3200K are names too: from 4000K to 25000K of CIE daylight (
 black bodies. A `Lamp` is a measured light in place of a name.
 """
 
+import functools
 import math
 import re
 from dataclasses import dataclass
@@ -135,6 +136,7 @@ Illuminant = str | Lamp
 """The name of an illuminant, or a measured light."""
 
 
+@functools.cache
 def standard_name(name: str) -> tuple[str, float | None]:
     """Return the name of an illuminant for one of `COMMON_NAMES`, and its colour
     temperature, as of ``3200K``.

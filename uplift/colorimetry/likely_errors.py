@@ -163,10 +163,10 @@ def expected_error(
     return ExpectedError(
         locations,
         columns,
-        products_floor,
-        expected[:, :-1] + products_floor,
-        (standard, bound),
-        likeness,
+        floor=products_floor,
+        left_out=expected[:, :-1] + products_floor,
+        radii=(standard, bound),
+        likeness=likeness,
     )
 
 

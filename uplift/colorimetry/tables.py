@@ -101,6 +101,7 @@ def names(kind: str) -> tuple[str, ...]:
     return tuple(_file()[f"{kind}: names"].tolist())
 
 
+@functools.cache
 def stated_name(kind: str, name: Illuminant) -> str:
     """Return the name that colour-science states for a name, which may be an alias or
     have other capitals.

@@ -221,15 +221,10 @@ def family_samples(
     locations = rgb_to_lab(sensor, rgb)
     if entries is not None:
         close = distances(locations, rgb_to_lab(sensor, entries.rgb)) <= SAME_COLOUR
-        apart = [
-            ((entries.measured[near] - own) ** 2).mean(axis=1)
-            for near, own in zip(close, measured, strict=True)
-        ]
-        new = [
-            row
-            for row, squares in enumerate(apart)
-            if squares.min(initial=np.inf) > SAME_SPECTRUM**2
-        ]
+        new = np.ones(len(rgb), dtype=bool)
+        for row, near in enumerate(close):
+            squares = ((entries.measured[near] - measured[row]) ** 2).mean(axis=1)
+            new[row] = squares.min(initial=np.inf) > SAME_SPECTRUM**2
         rgb = rgb[new]
         measured = measured[new]
         locations = locations[new]
@@ -265,8 +260,7 @@ def match_spectra(
         damping = DAMPING * np.trace(matrix, axis1=1, axis2=2) / model.count
         matrix += damping[:, None, None] * np.eye(model.count)
         trial = p - np.linalg.solve(matrix, slope[..., None])[..., 0]
-        better = (goal.residuals(trial, measured, colours) ** 2).sum(axis=1) < (
-            residual**2
-        ).sum(axis=1)
+        left = goal.residuals(trial, measured, colours)
+        better = (left**2).sum(axis=1) < (residual**2).sum(axis=1)
         p[better] = trial[better]
     return multipliers

@@ -141,8 +141,15 @@ def objective(
         # M = diag(1 + j²), but the constant multiplier is left to the measurement.
         smooth = np.maximum(smoothness * np.sqrt(model.metric_diagonal()), FLATNESS)
         multipliers = np.where(model.constant() > 0, FLATNESS, smooth)
-    values = float(np.sqrt(1 / len(basis)))
-    return Objective(model, basis, values, xyz, whites, weight, multipliers)
+    return Objective(
+        model,
+        basis,
+        values=float(np.sqrt(1 / len(basis))),
+        lights=xyz,
+        whites=whites,
+        weight=weight,
+        multipliers=multipliers,
+    )
 
 
 def minimise(goal: Objective, measured: Array) -> Array:

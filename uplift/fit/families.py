@@ -107,21 +107,18 @@ class FamilyKriging:
 
     def contributions(self, lab: Array) -> Array:
         """Contributions (F, n, N) at L*a*b* (n, 3)."""
-        rows = [np.flatnonzero(self.family == number) for number in range(self.count)]
-        return np.stack(
-            [
-                _kernel_sum(lab, self.locations[members], self.weights[members])
-                for members in rows
-            ]
-        )
+        parts = []
+        for number in range(self.count):
+            rows = np.flatnonzero(self.family == number)
+            parts.append(_kernel_sum(lab, self.locations[rows], self.weights[rows]))
+        return np.stack(parts)
 
     def __call__(self, lab: Array, relevance: Array) -> Array:
         """Sum of the contributions (n, N) at L*a*b* (n, 3), each times the relevance
         (F,) of its family.
         """
-        return _kernel_sum(
-            lab, self.locations, self.weights * relevance[self.family][:, None]
-        )
+        weights = self.weights * relevance[self.family][:, None]
+        return _kernel_sum(lab, self.locations, weights)
 
 
 def krige_families(
@@ -155,10 +152,8 @@ def krige_families(
 def _kernel_sum(lab: Array, locations: Array, weights: Array) -> Array:
     """Sums (n, N) of weights (E, N) at L*a*b* (n, 3)."""
     sums = np.zeros((len(lab), weights.shape[1]))
-    for block in blocks(
-        len(lab) if len(locations) else 0,
-        max(BLOCK_NUMBERS // max(len(locations), 1), 1),
-    ):
+    size = max(BLOCK_NUMBERS // max(len(locations), 1), 1)
+    for block in blocks(len(lab) if len(locations) else 0, size):
         sums[block] = _matern(lab[block], locations) @ weights
     return sums
 

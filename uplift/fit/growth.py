@@ -125,11 +125,8 @@ class Growth:
         if last != NOT_FITTED:
             self.done += int(fitted.sum())
             detail = f"round {last}: {len(points)} tried"
-            self.progress(
-                Progress(
-                    "fit", self.done, len(self.nodes.points), step=last, detail=detail
-                )
-            )
+            total = len(self.nodes.points)
+            self.progress(Progress("fit", self.done, total, step=last, detail=detail))
         return solution
 
     def is_smooth(self, correction: Array) -> Mask:
@@ -138,12 +135,9 @@ class Growth:
         """
         if self.problem.model.is_determined:
             return np.ones(len(correction), dtype=bool)
-        return (
-            largest(
-                np.abs(blocked_matmul(correction, self.problem.forward.inverse_root.T))
-            )
-            <= MAX_CORRECTION
-        )
+        root = self.problem.forward.inverse_root
+        change = blocked_matmul(correction, root.T)
+        return largest(np.abs(change)) <= MAX_CORRECTION
 
 
 def retry(growth: Growth, number: int) -> None:
@@ -161,17 +155,13 @@ def retry(growth: Growth, number: int) -> None:
         for block in growth.waiting_blocks():
             neighbours, inside = lattice.neighbours(block)
             adjacent = (inside & is_fresh[neighbours]).any(axis=1)
-            neighbours, known = (
-                neighbours[adjacent],
-                inside[adjacent] & fitted[neighbours[adjacent]],
-            )
+            neighbours = neighbours[adjacent]
+            known = inside[adjacent] & fitted[neighbours]
             # Column by column: all 26 neighbours at once would take 26 times the
             # memory.
             total = np.zeros((len(neighbours), multipliers.shape[1]))
-            for column in range(neighbours.shape[1]):
-                total += np.where(
-                    known[:, column, None], multipliers[neighbours[:, column]], 0
-                )
+            for near, is_known in zip(neighbours.T, known.T, strict=True):
+                total += np.where(is_known[:, None], multipliers[near], 0)
             points.append(block[adjacent])
             means.append(total / np.maximum(known.sum(axis=1), 1)[:, None])
         tried = np.concatenate(points)

@@ -201,12 +201,10 @@ def kernel_sums(
     with jax.enable_x64(True):
         for block in blocks(len(at), rows):
             count = block.stop - block.start
-            some = (
-                at[block] if count == rows else np.resize(at[block], (rows, 3))
-            )  # one shape is compiled
-            arrays = _kernel_block(
-                kernel.length, kernel.reach, own, some, locations, columns
-            )
+            some = at[block]
+            if count < rows:
+                some = np.resize(some, (rows, 3))  # one shape is compiled
+            arrays = _kernel_block(kernel, own, some, locations, columns)
             sums[block], nearest[block] = (
                 np.asarray(array)[:count] for array in arrays
             )
@@ -215,8 +213,7 @@ def kernel_sums(
 
 @compiled
 def _kernel_block(
-    length: float,
-    reach: float,
+    kernel: Kernel,
     own: jax.Array,
     at: jax.Array,
     locations: jax.Array,
@@ -226,7 +223,7 @@ def _kernel_block(
     distance = jnp.sqrt(
         sum((at[:, axis, None] - locations[:, axis]) ** 2 for axis in range(3))
     )
-    weights = _shared(distance, length) + own * _own(distance, reach)
+    weights = _shared(distance, kernel.length) + own * _own(distance, kernel.reach)
     return weights @ columns, distance.min(axis=1)
 
 

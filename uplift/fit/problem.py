@@ -67,7 +67,13 @@ class Problem:
         if self.model.is_determined:
             prior = None  # would only slow the convergence down
         return solve(
-            self.forward, start, target, self.tolerance, max_passes, prior, self.method
+            self.forward,
+            start,
+            target,
+            self.tolerance,
+            max_passes,
+            prior=prior,
+            method=self.method,
         )
 
 

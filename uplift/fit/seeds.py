@@ -184,7 +184,14 @@ def lattice_error(
     seeds = seed(lattice, entries.rgb)
     points = np.sort(seeds.points)
     target = lattice.target(points)
-    start = initial_guess(points, target, prior, seeds, entries.multipliers, full_entry)
+    start = initial_guess(
+        points,
+        target,
+        prior,
+        seeds,
+        entries=entries.multipliers,
+        blend=full_entry,
+    )
     fitted = problem.solve(target, start, MAX_PASSES, prior=start).multipliers
     wavelengths = problem.sensor.wavelengths
     spectra = evaluate(problem.model, fitted, wavelengths)

@@ -295,9 +295,9 @@ def _advance(method: Method) -> Callable[..., Any]:
             solver,
             lambda p, goal: (residual(forward, p, goal), None),
             y,
-            target,
-            options,
-            max_steps,
+            args=target,
+            options=options,
+            max_steps=max_steps,
         )
         return (
             y,

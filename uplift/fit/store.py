@@ -53,7 +53,13 @@ def store(growth: Growth, seeds: Seeds, prior: Prior) -> PointTable:
     status[absent] = Status.ABSENT
     entry[absent] = NO_ENTRY
     return PointTable(
-        coefficients, growth.rgb, distance, status, entry, growth.round, standard_error
+        coefficients,
+        growth.rgb,
+        distance,
+        status,
+        entry=entry,
+        round=growth.round,
+        standard_error=standard_error,
     )
 
 

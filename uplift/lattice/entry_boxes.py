@@ -73,9 +73,8 @@ class Nodes:
         """Σ w · values of the lattice (dim³, K), mixed with those of the entries (E,
         K): (n, K), in their type.
         """
-        return self.hits.mix(
-            weighted_sum(lattice, self.points, self.weights), atlas[self.hits.entry]
-        )
+        values = weighted_sum(lattice, self.points, self.weights)
+        return self.hits.mix(values, atlas[self.hits.entry])
 
     def nearest(self) -> tuple[Indices, Indices, Indices]:
         """Return the corners of largest weight (n,), and the rows and entries (m,)
@@ -84,10 +83,10 @@ class Nodes:
         best = self.weights.argmax(axis=1)[:, None]
         points = np.take_along_axis(self.points, best, axis=1)[:, 0]
         weights = np.take_along_axis(self.weights, best, axis=1)[:, 0]
-        is_entry = (
-            self.hits.lattice_weight * (1 + weights[self.hits.rows]) <= 1
-        )  # 1 − t ≥ t · w
-        return points, self.hits.rows[is_entry], self.hits.entry[is_entry]
+        hits = self.hits
+        # 1 − t ≥ t · w
+        is_entry = hits.lattice_weight * (1 + weights[hits.rows]) <= 1
+        return points, hits.rows[is_entry], hits.entry[is_entry]
 
     def lattice_rgb(self, rgb: Array) -> Array:
         """Return the colours (n, 3) at which the lattice is evaluated for linear RGB
@@ -113,10 +112,8 @@ class EntryBoxes:
     half_width: Array
 
     def __repr__(self) -> str:
-        return (
-            f"EntryBoxes({pluralise(int(np.count_nonzero(self.half_width)), 'box')} "
-            f"in {self.lattice})"
-        )
+        boxes = pluralise(int(np.count_nonzero(self.half_width)), "box")
+        return f"EntryBoxes({boxes} in {self.lattice})"
 
     @cached_property
     def faces(self) -> tuple[Array, Array]:
@@ -133,9 +130,8 @@ class EntryBoxes:
         high = self.lattice.from_steps(steps + half)
         at_start = rgb < self.lattice.nodes[0] + MARGIN
         at_end = rgb > self.lattice.nodes[-1] - MARGIN
-        return np.where(at_start, 2 * rgb - high, low), np.where(
-            at_end, 2 * rgb - low, high
-        )
+        first = np.where(at_start, 2 * rgb - high, low)
+        return first, np.where(at_end, 2 * rgb - low, high)
 
     @cached_property
     def cells(self) -> tuple[Indices, Indices]:
@@ -144,9 +140,8 @@ class EntryBoxes:
         """
         low, high = (self.lattice.cell(face)[0][:, None] for face in self.faces)
         cells = self.lattice.cell(self.rgb)[0][:, None] + CELL_BLOCK
-        touched = ((cells >= low) & (cells <= high)).all(axis=-1) & (
-            self.half_width > 0
-        )[:, None]
+        touched = ((cells >= low) & (cells <= high)).all(axis=-1)
+        touched &= (self.half_width > 0)[:, None]
         entry, _ = np.nonzero(touched)
         number = self.lattice.index(cells[touched])
         order = np.argsort(number, kind="stable")
@@ -230,14 +225,13 @@ class EntryBoxes:
         # x = (1 − t) e + t y: t is the largest fraction, over the axes, of the way from
         # e to the face that x moves to.
         room = np.where(ray > 0, high - centre, centre - low)
-        weight = np.divide(
-            np.abs(ray), room, out=np.zeros_like(ray), where=ray != 0
-        ).max(axis=1)
+        along = np.zeros_like(ray)
+        np.divide(np.abs(ray), room, out=along, where=ray != 0)
+        weight = along.max(axis=1)
         exit_rgb = rgb[rows]
         moved = weight > 0
-        exit_rgb[moved] = np.clip(
-            centre[moved] + ray[moved] / weight[moved, None], 0, 1
-        )
+        reached = centre[moved] + ray[moved] / weight[moved, None]
+        exit_rgb[moved] = np.clip(reached, 0, 1)
         return BoxHits(rows, entry, weight, exit_rgb)
 
 
@@ -253,17 +247,14 @@ class OutsideBoxes:
     half_width: Array
 
     def __repr__(self) -> str:
-        return (
-            f"OutsideBoxes({pluralise(int(np.count_nonzero(self.half_width)), 'box')})"
-        )
+        boxes = pluralise(int(np.count_nonzero(self.half_width)), "box")
+        return f"OutsideBoxes({boxes})"
 
     def find(self, rgb: Values) -> BoxHits:
         """Find which of the linear RGB (n, 3) lie in boxes."""
-        rows = (
-            np.flatnonzero((rgb < 0).any(axis=1) | (rgb > 1).any(axis=1))
-            if len(self.rgb)
-            else NO_ROWS
-        )
+        if not len(self.rgb):
+            return NO_HITS
+        rows = np.flatnonzero(((rgb < 0) | (rgb > 1)).any(axis=1))
         entry = np.full(len(rows), NO_ENTRY)
         distance = np.ones(len(rows))
         for box in np.flatnonzero(self.half_width > 0):
@@ -273,9 +264,5 @@ class OutsideBoxes:
             distance[inside] = from_centre[inside] / self.half_width[box]
         hit = entry != NO_ENTRY
         # The weight is 0 in the core of the box, and rises linearly to 1 on its faces.
-        return BoxHits(
-            rows[hit],
-            entry[hit],
-            np.maximum(distance[hit] - CORE, 0) / (1 - CORE),
-            rgb[rows[hit]],
-        )
+        weight = np.maximum(distance[hit] - CORE, 0) / (1 - CORE)
+        return BoxHits(rows[hit], entry[hit], weight, rgb[rows[hit]])

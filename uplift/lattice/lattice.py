@@ -3,7 +3,7 @@ numbered blue fastest.
 """
 
 import decimal
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import cached_property
 from itertools import product
 
@@ -33,27 +33,31 @@ class Lattice:
     """
 
     nodes: Array
-    dim: int = field(init=False)
-    """Number of nodes along each axis."""
-    size: int = field(init=False)
-    """Number of nodes, dim³."""
-    shape: tuple[int, int, int] = field(init=False)
-    """(dim, dim, dim), the shape of an array over the nodes."""
 
     def __post_init__(self) -> None:
         nodes = self.nodes
         valid = nodes.ndim == 1 and len(nodes) >= 2 and bool(np.isfinite(nodes).all())
         if not valid or not (np.diff(nodes) > 0).all():
-            raise OptionError(
-                (
-                    "the nodes of a lattice must be at least 2 increasing numbers, got "
-                    f"shape {nodes.shape}"
-                ),
-                hint="use dim=2 or more",
+            problem = (
+                "the nodes of a lattice must be at least 2 increasing numbers, got "
+                f"shape {nodes.shape}"
             )
-        dim = len(nodes)
-        for name, value in (("dim", dim), ("size", dim**3), ("shape", (dim, dim, dim))):
-            object.__setattr__(self, name, value)
+            raise OptionError(problem, hint="use dim=2 or more")
+
+    @property
+    def dim(self) -> int:
+        """Number of nodes along each axis."""
+        return len(self.nodes)
+
+    @property
+    def size(self) -> int:
+        """Number of nodes, dim³."""
+        return self.dim**3
+
+    @property
+    def shape(self) -> tuple[int, int, int]:
+        """(dim, dim, dim), the shape of an array over the nodes."""
+        return (self.dim,) * 3
 
     def __repr__(self) -> str:
         return f"Lattice(dim {self.dim}, {self.nodes[0]:g} to {self.nodes[-1]:g})"
@@ -61,8 +65,7 @@ class Lattice:
     @cached_property
     def points(self) -> Array:
         """(dim³, 3) target RGB of every node."""
-        grid = np.meshgrid(self.nodes, self.nodes, self.nodes, indexing="ij")
-        return np.stack(grid, axis=-1).reshape(-1, 3)
+        return self.target(np.arange(self.size))
 
     def target(self, index: Indices) -> Array:
         """Target RGB (..., 3) of nodes (...)."""
@@ -113,12 +116,10 @@ class Lattice:
         # The weight of a corner is the product of t or 1 − t along the three axes.
         along = np.ascontiguousarray(fraction.T)
         r, g, b = np.stack([1 - along, along], axis=1)
-        weights = (r[:, None, None] * g[None, :, None] * b[None, None, :]).reshape(
-            8, -1
-        )
-        return self.index(low)[:, None] + self.index(CORNERS), np.ascontiguousarray(
-            weights.T
-        )
+        weights = r[:, None, None] * g[None, :, None] * b[None, None, :]
+        weights = weights.reshape(8, -1)
+        corners = self.index(low)[:, None] + self.index(CORNERS)
+        return corners, np.ascontiguousarray(weights.T)
 
     def mask(self, points: Indices) -> Mask:
         """Set (dim³,) of nodes (k,)."""
@@ -128,29 +129,27 @@ class Lattice:
 
     def corner_points(self, cells: Mask) -> Mask:
         """Nodes that are corners of cells."""
+        dim = self.dim
+        lowest = cells.reshape(self.shape)
         points = np.zeros(self.shape, dtype=bool)
         for r, g, b in CORNERS:
-            inside = cells.reshape(self.shape)[
-                : self.dim - r, : self.dim - g, : self.dim - b
-            ]
-            points[r:, g:, b:] |= inside
+            points[r:, g:, b:] |= lowest[: dim - r, : dim - g, : dim - b]
         return points.ravel()
 
     def complete_cells(self, points: Mask) -> Mask:
         """Cells whose eight corners are all in a set of nodes."""
+        dim = self.dim
+        present = points.reshape(self.shape)
         cells = np.zeros(self.shape, dtype=bool)
         cells[:-1, :-1, :-1] = True
         for r, g, b in CORNERS:
-            cells[: self.dim - r, : self.dim - g, : self.dim - b] &= points.reshape(
-                self.shape
-            )[r:, g:, b:]
+            cells[: dim - r, : dim - g, : dim - b] &= present[r:, g:, b:]
         return cells.ravel()
 
     def cells_around(self, points: Mask) -> Mask:
         """Cells with a corner in a set of nodes."""
-        return self.complete_cells(
-            np.ones(self.size, dtype=bool)
-        ) & ~self.complete_cells(~points)
+        every = self.complete_cells(np.ones(self.size, dtype=bool))
+        return every & ~self.complete_cells(~points)
 
     def thinned(self, stride: int) -> tuple["Lattice", Indices]:
         """Return the coarser lattice of every ``stride``-th node and the last, and its
@@ -158,9 +157,8 @@ class Lattice:
         """
         kept = np.append(np.arange(0, self.dim - 1, stride), self.dim - 1)
         grid = np.meshgrid(kept, kept, kept, indexing="ij")
-        return Lattice(self.nodes[kept]), self.index(
-            np.stack(grid, axis=-1).reshape(-1, 3)
-        )
+        positions = np.stack(grid, axis=-1).reshape(-1, 3)
+        return Lattice(self.nodes[kept]), self.index(positions)
 
     def neighbours(self, index: Indices) -> tuple[Indices, Mask]:
         """Neighbours (n, 26) of nodes (n,), diagonal ones included, and which of them

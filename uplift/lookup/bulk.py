@@ -79,7 +79,12 @@ class Sampler:
         """
         width = self.grid.lattice.shape[1]
         return blockwise(
-            self._chunk, as_rgb(rgb), width, np.float32, self.threads, CHUNKS[0]
+            self._chunk,
+            as_rgb(rgb),
+            width,
+            np.float32,
+            threads=self.threads,
+            block=CHUNKS[0],
         )
 
     def __reduce__(self) -> tuple[Any, ...]:

@@ -13,7 +13,7 @@ import numpy as np
 
 from uplift.colorimetry.object_colours import toward_grey
 from uplift.colorimetry.sensor import Sensor
-from uplift.common.arrays import Array, Indices, Values
+from uplift.common.arrays import Array, Indices, Values, blocks
 from uplift.cube.data import CubeData
 from uplift.models.arithmetic import blocked_matmul_columns
 from uplift.models.duality import MAX_MULTIPLIER
@@ -75,14 +75,11 @@ def refine_to_rgb(data: CubeData, model: Model, start: Array, rgb: Array) -> Arr
     failed = np.flatnonzero(distance > data.threshold)
     if failed.size:
         goal = within_solid(data, rgb[failed])
-        for again in (
-            np.array(start[failed].T, order="C"),
-            np.zeros((model.count, failed.size)),
-        ):
-            before = np.abs(forward.residual(multipliers[:, failed].T, goal)).max(
-                axis=1
-            )
-            better = _descend(forward, again, np.array(goal.T, order="C")) < before
+        grey = np.zeros((model.count, failed.size))
+        for again in (np.array(start[failed].T, order="C"), grey):
+            left = forward.residual(multipliers[:, failed].T, goal)
+            after = _descend(forward, again, np.array(goal.T, order="C"))
+            better = after < np.abs(left).max(axis=1)
             multipliers[:, failed[better]] = again[:, better]
     return multipliers.T
 
@@ -204,8 +201,8 @@ def with_colours(
     pending = np.flatnonzero(
         np.abs(data.sensor.rgb(at_sensor) - rgb).max(axis=1) > TOLERANCE
     )
-    for first in range(0, pending.size, BLOCK_COLUMNS):
-        rows = pending[first : first + BLOCK_COLUMNS]
+    for block in blocks(pending.size, BLOCK_COLUMNS):
+        rows = pending[block]
         goal = problem.scale @ within_solid(data, rgb[rows]).T
         least = clearance(goal - problem.weights @ at_sensor[rows].T)
         linear = model.from_reflectance(np.clip(at_sensor[rows].T, least, 1 - least))
@@ -217,10 +214,8 @@ def with_colours(
 
 def shapes_between(problem: Pull, sensor: Sensor, wavelengths: Array) -> Array:
     """Return K (3, N) at wavelengths (N,) in nm, linear between those of the sensor."""
-    between = [
-        np.interp(wavelengths, sensor.wavelengths, row) for row in problem.shapes
-    ]
-    return np.array(between)
+    rows = [np.interp(wavelengths, sensor.wavelengths, row) for row in problem.shapes]
+    return np.array(rows)
 
 
 def _solve(problem: Pull, linear: Array, goal: Array) -> Array:
@@ -256,54 +251,56 @@ def _descend(forward: ForwardMap, multipliers: Array, target: Array) -> Array:
     """Move multipliers (C, n) in place towards linear RGB (3, n) and return the final
     distances (n,).
     """
-    residual = np.empty_like(target)
-    damping = np.zeros(target.shape[1])
-    for first in range(0, target.shape[1], BLOCK_COLUMNS):
-        block = slice(first, first + BLOCK_COLUMNS)
+    count = target.shape[1]
+    descent = _Descent(forward, multipliers, target.copy(), np.zeros(count))
+    for block in blocks(count, BLOCK_COLUMNS):
         linear = blocked_matmul_columns(forward.basis, multipliers[:, block])
         # t − r with r = W S(B p); later steps subtract their own change of r.
-        residual[:, block] = target[:, block] - blocked_matmul_columns(
-            forward.sensor, forward.model.to_reflectance(linear)
-        )
-        _move(forward, multipliers, residual, damping, block, linear)
+        reached = forward.model.to_reflectance(linear)
+        descent.residual[:, block] -= blocked_matmul_columns(forward.sensor, reached)
+        descent.move(block, linear)
     for _ in range(MAX_STEPS - 1):
-        pending = np.flatnonzero(np.abs(residual).max(axis=0) > TOLERANCE)
+        pending = np.flatnonzero(np.abs(descent.residual).max(axis=0) > TOLERANCE)
         if not pending.size:
             break
-        for first in range(0, pending.size, BLOCK_COLUMNS):
-            columns = pending[first : first + BLOCK_COLUMNS]
+        for block in blocks(pending.size, BLOCK_COLUMNS):
+            columns = pending[block]
             linear = blocked_matmul_columns(forward.basis, multipliers[:, columns])
-            _move(forward, multipliers, residual, damping, columns, linear)
-    return np.abs(residual).max(axis=0)
+            descent.move(columns, linear)
+    return np.abs(descent.residual).max(axis=0)
 
 
-def _move(
-    forward: ForwardMap,
-    multipliers: Array,
-    residual: Array,
-    damping: Array,
-    columns: slice | Indices,
-    linear: Array,
-) -> None:
-    """Take one step of some columns with linear part (N, k); steps that do not reduce
-    the residual are rejected.
-
-    Multipliers (C, n), residual (3, n) and damping (n,) change in place.
+@dataclass(frozen=True, eq=False)
+class _Descent:
+    """Multipliers (C, n), their residuals (3, n) and damping (n,), which change in
+    place.
     """
-    current = multipliers[:, columns]
-    off = residual[:, columns]
-    mu = damping[columns]
-    with np.errstate(over="ignore", invalid="ignore"):  # overflowing steps are rejected
-        change = minimum_norm_step(forward, linear, off, mu)
-        trial = current + change
-        difference = forward.model.reflectance_change(
-            linear, blocked_matmul_columns(forward.basis, change)
-        )
-        trial_off = off - blocked_matmul_columns(forward.sensor, difference)
-    # Damped as by Levenberg and Marquardt: μ falls after a step that helped, and rises
-    # after one that did not.
-    better = (trial_off**2).sum(axis=0) < (off**2).sum(axis=0)
-    better &= np.abs(trial).max(axis=0) <= MAX_MULTIPLIER
-    multipliers[:, columns] = np.where(better, trial, current)
-    residual[:, columns] = np.where(better, trial_off, off)
-    damping[columns] = np.where(better, mu / 16, 4 * mu + FIRST_DAMPING)
+
+    forward: ForwardMap
+    multipliers: Array
+    residual: Array
+    damping: Array
+
+    def move(self, columns: slice | Indices, linear: Array) -> None:
+        """Take one step of some columns with linear part (N, k); steps that do not
+        reduce the residual are rejected.
+        """
+        forward = self.forward
+        current = self.multipliers[:, columns]
+        off = self.residual[:, columns]
+        mu = self.damping[columns]
+        # Overflowing steps are rejected.
+        with np.errstate(over="ignore", invalid="ignore"):
+            change = minimum_norm_step(forward, linear, off, mu)
+            trial = current + change
+            difference = forward.model.reflectance_change(
+                linear, blocked_matmul_columns(forward.basis, change)
+            )
+            trial_off = off - blocked_matmul_columns(forward.sensor, difference)
+        # Damped as by Levenberg and Marquardt: μ falls after a step that helped, and
+        # rises after one that did not.
+        better = (trial_off**2).sum(axis=0) < (off**2).sum(axis=0)
+        better &= np.abs(trial).max(axis=0) <= MAX_MULTIPLIER
+        self.multipliers[:, columns] = np.where(better, trial, current)
+        self.residual[:, columns] = np.where(better, trial_off, off)
+        self.damping[columns] = np.where(better, mu / 16, 4 * mu + FIRST_DAMPING)

@@ -49,18 +49,18 @@ jax.tree_util.register_dataclass(
 class Moves:
     """Arrays by which mixtures are moved, a pytree for JAX."""
 
-    cells: Any
+    cells: jax.Array
     """(dim³,) where nodes have not their own colours."""
     problem: Pull
-    shapes: Any
+    shapes: jax.Array
     """(3, N) directions of the problem at the wavelengths of the cube of arrays."""
-    facets: Any
+    facets: jax.Array
     """(B, FACETS, 4) normals of the object-colour solid, and half its width along each,
     around a grey of 1/2.
     """
-    luminance: Any
+    luminance: jax.Array
     """(3,) weights of linear RGB."""
-    margin: Any
+    margin: jax.Array
     """Distance by which goals are inside the solid."""
     first: int
     """Column of the values of nodes at which those at wavelengths of the sensor
@@ -80,15 +80,14 @@ def make_moves(
     facets = np.column_stack([solid.normals[:half], width])
     facets = np.pad(facets, ((0, -half % FACETS), (0, 0)), mode="edge")
     problem = pull(data.model, data.sensor)
-    moves = Moves(
-        data.inexact_cells,
-        problem,
-        shapes_between(problem, data.sensor, wavelengths),
-        facets.reshape(-1, FACETS, 4),
-        data.sensor.rgb_to_xyz[1],
-        np.array(data.threshold / 2),
-        first,
-    )
+    arrays: dict[str, Any] = {
+        "cells": data.inexact_cells,
+        "shapes": shapes_between(problem, data.sensor, wavelengths),
+        "facets": facets.reshape(-1, FACETS, 4),
+        "luminance": data.sensor.rgb_to_xyz[1],
+        "margin": np.array(data.threshold / 2),
+    }
+    moves = Moves(problem=problem, first=first, **arrays)
     return jax.tree.map(partial(_as_type, dtype), moves)
 
 

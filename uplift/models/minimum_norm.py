@@ -57,8 +57,8 @@ def forward_map(model: Model, wavelengths: ArrayLike, sensor: Array) -> ForwardM
         basis,
         sensor,
         root,
-        np.linalg.inv(root),
-        jacobian_basis.reshape(len(basis), -1),
+        inverse_root=np.linalg.inv(root),
+        jacobian_basis=jacobian_basis.reshape(len(basis), -1),
     )
 
 

@@ -182,7 +182,9 @@ def build_stages(
     kept = None
     if scene is not None:
         kept = np.flatnonzero(scene.required_points(boxes, sensor, progress))
-    points, improvements = _fit_nodes(options, problem, learnt, seeded, kept, progress)
+    points, improvements = _fit_nodes(
+        options, problem, learnt, seeded, kept, progress=progress
+    )
     smoothed: dict[str, float] = {}
     if not options.exact_entries:
         constraints, smoothed = smooth_spots(problem, constraints, boxes, points)

@@ -3,10 +3,8 @@
 import numpy as np
 from numpy.testing import assert_allclose, assert_array_equal
 
-from tests.helpers import raises
 from uplift.colorimetry import observer
 from uplift.colorimetry.delta_e import lab
-from uplift.common.errors import ColourError
 from uplift.extras.looks.lab_errors import lab_errors
 from uplift.extras.looks.metamer_bounds import bounds
 
@@ -50,8 +48,3 @@ def test_the_likely_region_shrinks_towards_an_entry_outside_the_space(cyan_cube)
         np.linalg.det(lab_errors(cyan_cube.data, FL11).covariance(rgb)[:, 1:, 1:])
     )
     assert areas[0] < 0.5 * areas[1] < 0.5 * areas[2]
-
-
-def test_colours_without_reflectance_are_refused(plain_cube):
-    with raises(ColourError, "colour-unrealisable"):
-        bounds(plain_cube, np.array([[-1.0, 0.4, 0.3]]), FL11)

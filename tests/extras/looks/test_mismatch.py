@@ -94,22 +94,6 @@ def test_the_outline_of_a_mesh_is_that_of_its_projection():
     assert not Path(centre + 0.95 * (limits - centre)).contains_points(skew).all()
 
 
-def test_volumes_that_are_points(sensor):
-    """Those under the build light, and those of black and white."""
-    rgb = np.random.default_rng(2).uniform(size=(20, 3))
-    volumes = mismatch_volumes(sensor, sensor.light, rgb, divisions=1)
-    assert_allclose(
-        volumes.xyz, np.repeat(sensor.xyz(rgb)[:, None], 42, axis=1), atol=1e-9
-    )
-    assert np.abs(volumes.volume).max() < 1e-20
-    light = observer.light("FL11")
-    volumes = mismatch_volumes(
-        sensor, light, np.array([[0.0, 0, 0], [1, 1, 1]]), divisions=1
-    )
-    assert_allclose(volumes.xyz[0], 0, atol=1e-7)
-    assert_allclose(volumes.xyz[1], np.tile(light.white, (42, 1)), atol=1e-7)
-
-
 def test_the_volume_is_that_of_the_hull_of_linear_programs(sensor):
     """Directions, solver and volume are independent of the module."""
     light = observer.light("FL11")

@@ -11,7 +11,7 @@ from tests.extras.texture.conftest import channels, planes, read_channels, write
 from tests.helpers import raises, warns
 from uplift.common.errors import ColourError, OptionError
 from uplift.extras.images.counts import Counts
-from uplift.extras.paint.coats import DARKEST, Dyes, Pigments, dye_absorption
+from uplift.extras.paint.coats import DARKEST, Dyes, Pigments, Plates, dye_absorption
 from uplift.extras.paint.duntley import DuntleyPaints
 from uplift.extras.paint.optics import (
     NO_SURFACE,
@@ -142,9 +142,9 @@ def test_a_plate_is_the_sum_over_passes_and_keeps_the_energy_of_clear_light(rho)
 def test_a_plate_of_index_1_is_the_layer_alone(two):
     dyes = Dyes(two)
     for ground in (0.0, 0.3, 1.0):
-        found = dyes.plate([1, 2], 1.5).over(ground)
+        found = Plates(two).coat([1, 2], 1.5).over(ground)
         assert_allclose(found, dyes.coat([1, 2], 1.5).over(ground))
-    assert (dyes.plate([1, 2], 1.5, OIL).over(0.0) >= OIL.outside).all()
+    assert (Plates(two).coat([1, 2], 1.5, OIL).over(0.0) >= OIL.outside).all()
 
 
 @pytest.mark.parametrize("surface", SURFACES)

@@ -2,12 +2,8 @@
 exactness, undefined orders.
 """
 
-from fractions import Fraction
-
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 from numpy.polynomial import legendre
 from numpy.testing import assert_allclose, assert_array_equal
 
@@ -47,41 +43,6 @@ def test_rule_is_exact_to_degree_2n_minus_1_and_no_further(order):
     assert _moment_error(rule, POINTS, BELL, 2 * order - 1) < 1e-12
     if order <= 8:
         assert _moment_error(rule, POINTS, BELL, 2 * order) > 1e-9
-
-
-def _exact_nodes(points, masses, order):
-    """Roots of the orthogonal polynomial from its moments, by elimination
-    in fractions.
-    """
-    powers = np.arange(2 * order)[:, None]
-    moments = (np.array(points, dtype=object) ** powers) @ np.array(masses)
-    rows = np.array([moments[i : i + order + 1] for i in range(order)]) * Fraction(1)
-    rows[:, -1] *= -1
-    for i in range(order):
-        pivot = i + np.flatnonzero(rows[i:, i])[0]
-        rows[[i, pivot]] = rows[[pivot, i]]
-        rows[i] /= rows[i, i]
-        for k in set(range(order)) - {i}:
-            rows[k] -= rows[k, i] * rows[i]
-    return np.roots([1.0, *rows[::-1, -1].astype(float)])
-
-
-@given(
-    st.lists(st.integers(-9, 9), min_size=6, max_size=12).filter(
-        lambda m: sum(map(bool, m)) > 4
-    ),
-    st.integers(1, 4),
-)
-def test_nodes_agree_with_elimination_in_fractions(masses, order):
-    points = list(range(len(masses)))
-    try:
-        result = gauss_rule(points, masses, order)
-    except OptionError:
-        return
-    expected = np.sort_complex(_exact_nodes(points, masses, order))
-    gap = np.diff(result.nodes).min() if order > 1 else 1.0
-    if gap > 1e-2:  # np.roots is inaccurate for nearly double roots
-        assert_allclose(result.nodes, expected, atol=1e-5)
 
 
 @pytest.mark.parametrize(

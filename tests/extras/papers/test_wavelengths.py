@@ -8,7 +8,6 @@ import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
 from tests.helpers import raises
-from uplift.colorimetry.delta_e import delta_e_2000
 from uplift.common.errors import OptionError, UnknownNameError, UpliftError
 from uplift.extras.papers.wavelengths import (
     METHODS,
@@ -87,15 +86,6 @@ def test_target_is_met_and_one_wavelength_less_misses_it(spiky):
 def test_invalid_options_raise(smooth, options, kind, code):
     with raises(kind, code):
         choose(smooth, **options)
-
-
-def test_metric_is_delta_e_of_close_colours(spiky):
-    change = np.random.default_rng(4).normal(0, 1e-6, spiky.xyz.shape)
-    approximate = np.linalg.norm(
-        np.einsum("kmij,kmj->kmi", FitProblem(spiky).factors, change), axis=-1
-    )
-    exact = delta_e_2000(spiky.lab, spiky.to_lab(spiky.xyz + change))
-    assert_allclose(approximate, exact, rtol=0.02)
 
 
 def test_jacobian_agrees_with_central_differences(spiky):

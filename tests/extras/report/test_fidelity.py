@@ -27,6 +27,7 @@ from uplift.extras.report.measures import (
     collect_failures,
     compute_smoothness,
 )
+from uplift.lookup.cube import Cube
 from uplift.lookup.interpolate import lattice_spectra
 from uplift.models.model import reflectance
 
@@ -281,3 +282,15 @@ def test_colours_outside_srgb_have_no_answer(judged):
     assert np.isnan(other.answers[0]).all()
     assert np.isfinite(other.delta_e[1:]).all()
     assert np.isfinite(other.answered).all()
+
+
+def test_standard_errors_of_sparse_cubes_are_those_of_nodes_that_lookups_reach(
+    small_cube,
+):
+    data = small_cube.data
+    corners = data.lattice.corners(np.full((1, 3), 0.3))[0][0]
+    points = data.points.restricted_to(corners)
+    sparse = Cube(dataclasses.replace(data, points=points))
+    found = assess(sparse, "sparse.uplift", 1, None, ("A",)).values
+    count = sparse.covers(data.lattice.points[corners]).sum()
+    assert sum(found["standard_error"]["delta_e_2000"]["counts"]) == count > 0

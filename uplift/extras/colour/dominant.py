@@ -2,11 +2,9 @@
 15:2018, 9.3.2).
 """
 
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Array, Mask
@@ -19,40 +17,14 @@ between two edges.
 """
 
 
-@dataclass(frozen=True)
-class DominantWavelength:
-    """Chromaticity relative to white."""
-
-    wavelength: float | None
-    """Wavelength in nm at which the line from white through the colour meets the
-    spectrum locus; that of the opposite direction for purples. None for greys and for
-    black.
-    """
-    complementary: bool
-    """Whether the colour is a purple, and the wavelength that of its complement."""
-    purity: float
-    """Distance of the colour from white relative to that of the spectrum locus, or of
-    the line of purples. Above 1 for colours that no light has.
-    """
-
-
-GREY = DominantWavelength(None, False, 0.0)
-
-
-def dominant_wavelength(xyz: ArrayLike, sensor: Sensor) -> DominantWavelength:
-    """Find the dominant wavelength and the purity of a colour (3,) relative to the
-    white of a sensor.
-    """
-    colour = np.asarray(xyz, dtype=float)[None]
-    [wavelength], [complementary], [purity] = dominant_wavelengths(colour, sensor)
-    if np.isnan(wavelength):
-        return GREY
-    return DominantWavelength(float(wavelength), bool(complementary), float(purity))
-
-
 def dominant_wavelengths(xyz: Array, sensor: Sensor) -> tuple[Array, Mask, Array]:
-    """Find the dominant wavelengths of colours (n, 3), NaN for greys and black, whether
-    they are those of the complement, and the purities.
+    """Find the dominant wavelengths of colours (n, 3), relative to the white of a
+    sensor, whether they are those of the complement, and the purities.
+
+    The line from white through a colour meets the spectrum locus at the dominant
+    wavelength in nm, for purples in the opposite direction. It is NaN for greys and
+    black. Purity is the distance of the colour from white relative to that of the
+    locus, or of the line of purples: above 1 for colours that no light has.
     """
     responds = sensor.cmfs.any(axis=1)
     wavelengths = sensor.wavelengths[responds]

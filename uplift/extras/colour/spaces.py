@@ -167,17 +167,15 @@ def find_space(text: str) -> ImageSpace:
         return ImageSpace(text, Primaries.of(numbers))
     if (found := find_ocio_space(text, built_in=False)) is not None:
         return found.as_image_space()
-    try:
-        space = look_up_space(text, ocio=False)
-    except KeyError:
+    space = tables.rgb_space(text)
+    if space is None:
         if (found := find_ocio_space(text)) is not None:
             return found.as_image_space()
         _check_colours(text)
         spaces = _configuration(BUILT_IN).getColorSpaces()
         names = [space.getName() for space in spaces if not space.isData()]
-        raise unknown_name(
-            text, (*tables.names("RGB space"), *names), "RGB space", ALL_SPACES
-        ) from None
+        known = (*tables.names("RGB space"), *names)
+        raise unknown_name(text, known, "RGB space", ALL_SPACES)
     is_xyz = np.array_equal(space.primaries, np.eye(3)[:, :2])
     if is_xyz and (found := find_ocio_space(space.name)) is not None:
         return (
@@ -186,20 +184,19 @@ def find_space(text: str) -> ImageSpace:
     return ImageSpace(space.name, primaries_of(space), space.cctf_decoding)
 
 
-def look_up_space(name: str, *, ocio: bool = True) -> RgbSpace:
+def look_up_space(name: str) -> RgbSpace:
     """Find an RGB space of colour-science, also by the name of OpenColorIO of a space
     with the same primaries.
     """
     if (found := tables.rgb_space(name)) is not None:
         return found
-    if ocio and (space := find_ocio_space(name)) is not None:
-        for each in map(tables.rgb_space, (*FIRST_SPACES, *tables.names("RGB space"))):
-            if each is not None:
-                difference = space.matrix - conversion(primaries_of(each), AP0)
+    if (space := find_ocio_space(name)) is not None:
+        for known in map(tables.rgb_space, (*FIRST_SPACES, *tables.names("RGB space"))):
+            if known is not None:
+                difference = space.matrix - conversion(primaries_of(known), AP0)
                 if np.abs(difference).max() <= MAX_MATRIX_DIFFERENCE:
-                    return each
-    if ocio:
-        _check_colours(name)
+                    return known
+    _check_colours(name)
     raise unknown_name(name, tables.names("RGB space"), "RGB space", ALL_SPACES)
 
 

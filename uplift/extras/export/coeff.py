@@ -82,12 +82,8 @@ SYMBOLS = {
     ("ACES2065-1", "D60"): "ACES2065_1",
 }
 """Names of the tables of pbrt by space and illuminant."""
-LAYOUTS = {
-    "coeff": {"", *SYMBOLS.values()},
-    "pbrt": set(SYMBOLS.values()),
-    "luisa": {"sRGB"},
-}
-"""Tables that a layout can hold; that of rgb2spec has those without a name as well."""
+PROGRAMS = {"pbrt": tuple(SYMBOLS), "luisa": (("sRGB", "D65"),)}
+"""Spaces and illuminants of the tables of programs; rgb2spec takes all."""
 
 
 def export(
@@ -110,7 +106,7 @@ def write_coeff(
     """Write a cube as a table of sigmoid spectra with ``res`` points along each axis, 2
     to 256.
 
-    The layout is one of `LAYOUTS`; pbrt and LuisaRender are compiled for 64 points.
+    The layout is coeff, pbrt or luisa; pbrt and LuisaRender are compiled for 64 points.
     Readers interpret RGB in the cube's space under its illuminant; Mitsuba and
     LuisaRender assume sRGB under D65. Returns the errors of colours that rgb2spec
     interpolates, under the light of the cube. Raises `ColourError` for the cube of a
@@ -119,16 +115,12 @@ def write_coeff(
     data.sensor.require_xyz()
     check_res(res, RES, MAX_RES)
     sensor = on_range(data.sensor, START, END, STEP)
-    name = SYMBOLS.get((sensor.space, sensor.illuminant), "")
-    if name not in LAYOUTS[layout]:
-        known = [
-            f"{space} under {light}"
-            for (space, light), symbol in SYMBOLS.items()
-            if symbol in LAYOUTS[layout]
-        ]
+    light = (sensor.space, sensor.illuminant)
+    if light not in PROGRAMS.get(layout, (light,)):
+        known = [f"{space} under {name}" for space, name in PROGRAMS[layout]]
         raise OptionError(
-            f"a {layout} table needs {' or '.join(known)}, got {sensor.space} under "
-            f"{sensor.illuminant}",
+            f"a {layout} table needs {' or '.join(known)}, got {light[0]} under "
+            f"{light[1]}",
             hint="build a cube of this space and illuminant",
         )
     with atomic_write(path, force=force) as temporary:
@@ -138,7 +130,7 @@ def write_coeff(
         if layout == "coeff":
             content = _binary(sensor, scale, table)
         else:
-            content = _source(layout, name, scale, table).encode()
+            content = _source(layout, SYMBOLS[light], scale, table).encode()
         temporary.write_bytes(content)
     return _errors(data, sensor, scale, table)
 

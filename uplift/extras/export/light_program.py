@@ -21,17 +21,22 @@ PER_LINE = 27
 
 
 def export(
-    table: EmissionTable, path: Path, style: str, *, force: bool, **settings: str
+    lights: EmissionTable,
+    path: Path,
+    style: str,
+    *,
+    force: bool,
+    table: str | None = None,
 ) -> str:
     """Write a program and its table."""
     written = write_light_program(
-        table.data, path, style=style, form=settings.get("table"), force=force
+        lights.data, path, style=style, form=table, force=force
     )
-    knots, rings = table.data.lattice.shape
+    knots, rings = lights.data.lattice.shape
     size = sum(file.stat().st_size for file in written) / 1e6
     facts = [
         pluralise(knots * rings, "node"),
-        pluralise(len(table.lamp_names), "lamp"),
+        pluralise(len(lights.lamp_names), "lamp"),
         f"{size:.1f} MB",
         *(f"table in {file}" for file in written[1:]),
     ]

@@ -234,9 +234,11 @@ def write_files(
     check_outputs(files, force=True)
     image = table.image().tobytes()
     if form == "file":
-        _check_table(files[1], image, path, force=force)
+        is_new = not files[1].exists() or files[1].read_bytes() != image
+        if is_new and files[1].exists():
+            _check_replaced(files[1], path, force=force)
         write_text(text, path, force=force)
-        if not _holds(files[1], image):
+        if is_new:
             with atomic_write(files[1], force=True) as temporary:
                 temporary.write_bytes(image)
         return files
@@ -246,34 +248,18 @@ def write_files(
     return files
 
 
-def _holds(path: Path, content: bytes) -> bool:
-    """Whether a file exists and has this content."""
-    return (
-        path.exists()
-        and path.stat().st_size == len(content)
-        and path.read_bytes() == content
-    )
+def _check_replaced(table: Path, program: Path, *, force: bool) -> None:
+    """Check that a table with other numbers may be replaced. Programs of one cube in
+    several languages share theirs.
 
-
-def _check_table(table: Path, image: bytes, program: Path, *, force: bool) -> None:
-    """Check that a table may be written. Programs of one cube in several languages
-    share theirs.
-
-    Another table is an `OutputError`; with ``force`` it is replaced, with a warning if
-    other programs read it.
+    Raise `OutputError`; with ``force``, warn of programs that no longer can read it.
     """
-    if not table.exists() or _holds(table, image):
-        return
-    others = (program.with_suffix(language.suffix) for language in LANGUAGES.values())
-    existing = [path for path in others if path != program and path.exists()]
-    readers = [
-        path.name for path in existing if table.name.encode() in path.read_bytes()
-    ]
     if not force:
-        owner = f"of {' and '.join(readers)}" if readers else "of another program"
-        problem = f"exists already with other numbers, {owner}"
+        problem = "exists already with other numbers"
         hint = "pass force=True to replace it, or choose another name"
         raise OutputError(problem, path=table, code="file-exists", hint=hint)
+    others = (program.with_suffix(language.suffix) for language in LANGUAGES.values())
+    readers = [path.name for path in others if path != program and path.exists()]
     if readers:
         problem = f"replaced; {' and '.join(readers)} can no longer read it"
         warn(UpliftWarning(problem, path=table, hint="export them again"))

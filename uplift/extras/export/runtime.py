@@ -107,6 +107,28 @@ READ = (
     "sensor.sensitivities",
 )
 """Arrays of a cube file that lookups need."""
+FIELDS = (
+    "DIM",
+    "ENTRIES",
+    "NODES",
+    "BINS",
+    "LISTS",
+    "BOXES",
+    "PULL",
+    "SCALES",
+    "LUMINANCE",
+    "FACETS",
+    "FACET_COUNT",
+    "SAMPLES",
+    "FIRST",
+    "STEP",
+    "MARGIN",
+    "START",
+    "END",
+    "LOW",
+    "SCALE",
+)
+"""Constants of programs that are those of an open cube."""
 TYPES = ("float64", "float32", "uint8", "int32", "int16", "uint32")
 """Types of arrays, in the order of the reader."""
 LARGEST_PRIME = 311
@@ -136,6 +158,9 @@ def compose_header(kernels: Sequence[Kernel] = KERNELS) -> str:
         "width": LANGUAGES["c"].width,
         "definitions": "\n".join(
             f"#define UP_{name} {literal(value)}" for name, value in MOVES.items()
+        ),
+        "fields": "\n".join(
+            f"#define UP_{name} cube->{name.lower()}" for name in FIELDS
         ),
         "inclusions": "\n".join(map(_inclusion, kernels)),
         "kernels": ",".join(map(_kernel_row, kernels)),

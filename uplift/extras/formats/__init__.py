@@ -1,5 +1,8 @@
 """Formats of atlas files: tables, spreadsheets, files of instruments and spectral
 libraries. Each one is a file, and a row of `FORMATS`.
+
+Not here: the measurement archives of ART, atlases as such (`uplift.atlas`), and the
+tables of recipes of paints (`uplift.extras.paint`).
 """
 
 from uplift.atlas.formats import Format

@@ -45,7 +45,7 @@ def no_attributes(part: Part) -> Mapping[str, Any]:
 class ImageConverter:
     """The conversion of one image, or of all images alike.
 
-    ``rows`` converts bands, ``header`` are the attributes of a part besides those of
+    ``rows`` converts bands, ``header`` are the attributes of a part next to those of
     the `Converter`, and ``facts`` sentences about the image, such as its exposure.
     """
 

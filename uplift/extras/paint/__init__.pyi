@@ -1,5 +1,6 @@
 from .coats import Dyes as Dyes
 from .coats import Pigments as Pigments
+from .coats import Plates as Plates
 from .duntley import DuntleyPaints as DuntleyPaints
 from .optics import Surface as Surface
 from .optics import add_lights as add_lights
@@ -15,7 +16,6 @@ from .paints import Paints as Paints
 from .paints import strengths as strengths
 from .paints_file import read_paints as read_paints
 from .paints_file import write_paints as write_paints
-from .pigments import Pigment as Pigment
 from .pigments import dispersive as dispersive
 from .recipes import PaintRecipe as PaintRecipe
 from .recipes import PaintTarget as PaintTarget

@@ -145,18 +145,6 @@ class Dyes:
         transmittance = self._transmittance(parts, thickness, surface)
         return Coat(Layer(np.zeros_like(transmittance), transmittance), surface)
 
-    def plate(
-        self,
-        parts: ArrayLike,
-        thickness: float | None = None,
-        surface: Surface = NO_SURFACE,
-    ) -> Coat:
-        """Make a free plate with a surface on both sides, behind which the ground is
-        across a gap of air.
-        """
-        transmittance = self._transmittance(parts, thickness, surface)
-        return Coat(plate(transmittance, surface.outside))
-
     def _transmittance(
         self, parts: ArrayLike, thickness: float | None, surface: Surface
     ) -> Array:
@@ -168,6 +156,22 @@ class Dyes:
         absorption = dye_absorption(self.spectra, surface)
         mixed = weighted_sum(absorption, as_shares(parts))
         return np.exp(-(1.0 if thickness is None else thickness) * mixed)
+
+
+class Plates(Dyes):
+    """Dyes in a free plate with a surface on both sides, behind which the ground is
+    across a gap of air.
+    """
+
+    def coat(
+        self,
+        parts: ArrayLike,
+        thickness: float | None = None,
+        surface: Surface = NO_SURFACE,
+    ) -> Coat:
+        """Make a plate; see `Dyes.coat`."""
+        transmittance = self._transmittance(parts, thickness, surface)
+        return Coat(plate(transmittance, surface.outside))
 
 
 def dye_absorption(reflectance: ArrayLike, surface: Surface = NO_SURFACE) -> Array:

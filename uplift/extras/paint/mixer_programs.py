@@ -88,18 +88,18 @@ def write_mixer(
     OutputError
         A file exists.
     """
-    if style not in WORDS:
-        raise unknown_name(style, WORDS, "style of mixers")
+    if style not in STYLES:
+        raise unknown_name(style, STYLES, "style of mixers")
+    source, words_of = STYLES[style]
     files = output_files(path, style)
     check_outputs(files, force=force)
     mixer = make_mixer(cube, res)
-    words = WORDS[style](mixer) | _facts(cube.data, mixer, files[0])
-    text = Template(read_source(SOURCES[style])).substitute(words)
-    text = name_program(text, files[0].stem)
+    words = words_of(mixer) | _facts(cube.data, mixer, files[0])
+    text = Template(read_source(source)).substitute(words)
     for table in files[1:]:
         with atomic_write(table, force=force) as temporary:
             temporary.write_bytes(texture(mixer).tobytes())
-    write_text(text, files[0], force=force)
+    write_text(name_program(text, files[0].stem), files[0], force=force)
     return files
 
 
@@ -181,9 +181,9 @@ def texture(mixer: RgbMixer) -> Values:
     return np.concatenate(quarters).astype("<f2")
 
 
-WORDS: dict[str, Callable[[RgbMixer], Words]] = {
-    "mixer-c": _c_words,
-    "mixer-glsl": _glsl_words,
-    "mixer-js": _js_words,
+STYLES: dict[str, tuple[str, Callable[[RgbMixer], Words]]] = {
+    "mixer-c": ("mixer.h", _c_words),
+    "mixer-glsl": ("mixer.glsl", _glsl_words),
+    "mixer-js": ("mixer.mjs", _js_words),
 }
-SOURCES = {"mixer-c": "mixer.h", "mixer-glsl": "mixer.glsl", "mixer-js": "mixer.mjs"}
+"""Source of each style, and its words."""

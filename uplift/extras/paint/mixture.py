@@ -2,10 +2,12 @@
 ingredients with their parts.
 """
 
+from __future__ import annotations
+
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Protocol
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -16,14 +18,15 @@ from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Array
 from uplift.common.errors import ColourError, OptionError, UpliftWarning, warn
 from uplift.common.text import format_value
-from uplift.extras.colour.colour_source import ColourSource
-from uplift.extras.colour.spaces import ImageSpace
 from uplift.extras.files.csv import is_decimal, parse_decimal
-from uplift.extras.paint.coats import Dyes, Pigments
 from uplift.extras.paint.optics import Coat, Surface, add_lights, ramp, stack_filters
 from uplift.extras.paint.paints import Paints
 from uplift.extras.paint.pigments import Pigment, Scattering
-from uplift.lookup.cube import Cube
+
+# A mixture of measured paints loads no reader of colours and files.
+if TYPE_CHECKING:
+    from uplift.extras.colour.spaces import ImageSpace
+    from uplift.lookup.cube import Cube
 
 PARTS = re.compile(r"\s*([0-9.+-][0-9.,eE+-]*)\s*:(.*)", re.DOTALL)
 CONSTANT_SPECTRA = {"white": 1.0, "black": 0.0}
@@ -115,6 +118,8 @@ class SpectrumResolver:
 
     def _rgb(self, text: str) -> Array:
         """Return the linear RGB (3,) of a colour."""
+        from uplift.extras.colour.colour_source import ColourSource
+
         source = ColourSource((text,), space=self.space)
         try:
             [(rgb,)] = source.blocks(self.cube.data.sensor)
@@ -152,9 +157,9 @@ class Recipe:
         """The parts, followed by those of the ramp."""
         return np.concatenate([[self.parts], ramp(self.parts, RAMP)])
 
-    def components(self, law: Scattering) -> Components:
-        """Return the components of a coat, by the class of their kind. S of pigments
-        that are known by one colour follows a law.
+    def components(self, law: Scattering, *, in_plate: bool = False) -> Components:
+        """Return the components of a coat, by the class of their kind: S of pigments
+        that are known by one colour follows a law, and dyes may be in a plate.
         """
         if self.kind == "measured":
             return Pigment(self.spectra[:, 0], self.spectra[:, 1])
@@ -162,8 +167,10 @@ class Recipe:
             from uplift.extras.paint.duntley import DuntleyPaints
 
             return DuntleyPaints(self.spectra)
+        from uplift.extras.paint.coats import Dyes, Pigments, Plates
+
         if self.kind == "dye":
-            return Dyes(self.spectra)
+            return (Plates if in_plate else Dyes)(self.spectra)
         return Pigments(self.spectra, law, self.on_black)
 
     def sums(self) -> Array:

@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -202,6 +203,20 @@ class Paints:
         backing = np.broadcast_to(ground, self.wavelengths.shape)
         return self.pigments.coat(amounts, thickness, self.surface).over(backing)
 
+    def rows(self) -> list[dict[str, Any]]:
+        """Return what is known of each paint by the names of columns."""
+        columns = dict(vars(self.pigments))
+        if self.errors is not None:
+            errors = vars(self.errors).items()
+            columns |= {f"{key}_errors": values for key, values in errors}
+        rows = []
+        for row, name in enumerate(self.names):
+            fields: dict[str, Any] = {"name": name}
+            if self.prices and np.isfinite(self.prices[row]):
+                fields["price"] = self.prices[row]
+            rows.append(fields | {key: values[row] for key, values in columns.items()})
+        return rows
+
     @cached_property
     def lightest(self) -> int:
         """Position of the paint that reflects most where it absorbs most, usually
@@ -231,7 +246,7 @@ class Paints:
         """
         amounts: Array = as_array(parts)
         prices = np.array(self.prices or (np.nan,) * len(self))
-        used = np.where(amounts > 0, amounts * np.where(amounts > 0, prices, 0), 0)
+        used = np.where(amounts > 0, amounts * prices, 0)
         return np.asarray(used.sum(axis=-1) / amounts.sum(axis=-1))
 
 

@@ -58,21 +58,12 @@ def to_toml(paints: Paints) -> str:
     str
         The text; `read_paints` reads it.
     """
-    columns = dict(vars(paints.pigments))
-    if paints.errors is not None:
-        errors = vars(paints.errors).items()
-        columns |= {f"{key}_errors": values for key, values in errors}
-    tables = []
-    for row, name in enumerate(paints.names):
-        price = paints.prices[row] if paints.prices else np.nan
-        table = {"name": name, "price": price if np.isfinite(price) else None}
-        tables.append(table | {key: values[row] for key, values in columns.items()})
     values = {
         "format": FORMAT,
         "wavelengths": paints.wavelengths,
         "to_scale": paints.is_to_scale,
         "surface": vars(paints.surface),
-        "paints": tables,
+        "paints": paints.rows(),
     }
     return f"{HEAD}{toml_text(values)}\n"
 

@@ -48,20 +48,21 @@ def read_answers(path: StrPath, wavelengths: Array | None = None) -> StoredAnswe
     except ValueError as error:
         raise ColourError(f"is not CSV: {error}", path=path, hint=hint) from error
     names = rows[0].keys() if rows else set()
-    at = {value: name for name in names if math.isfinite(value := _number(name))}
+    columns = {nm: name for name in names if math.isfinite(nm := _number(name))}
     if wavelengths is not None:
-        at = {nm: at[nm] for nm in wavelengths.tolist() if nm in at}
-    if not {"r", "g", "b"} <= names or not at:
+        columns = {nm: columns[nm] for nm in wavelengths.tolist() if nm in columns}
+    if not {"r", "g", "b"} <= names or not columns:
         raise ColourError(
             "must have columns r, g and b, columns of wavelengths, and rows",
             path=path,
             hint="write it as queries are written in CSV",
         )
-    columns = [*"rgb", *(at[nm] for nm in sorted(at))]
-    values = np.empty((len(rows), len(columns)))
+    known = sorted(columns)
+    used = [*"rgb", *map(columns.__getitem__, known)]
+    table = np.empty((len(rows), len(used)))
     for number, row in enumerate(rows):
-        values[number] = [_number(row[name]) for name in columns]
-    finite = np.isfinite(values).all(axis=1)
+        table[number] = [_number(row[name]) for name in used]
+    finite = np.isfinite(table).all(axis=1)
     if not finite.all():
         raise ColourError(
             "each column needs a finite number",
@@ -69,7 +70,7 @@ def read_answers(path: StrPath, wavelengths: Array | None = None) -> StoredAnswe
             line=int(finite.argmin()) + 2,
             hint="correct the row",
         )
-    return StoredAnswers(values[:, :3], np.array(sorted(at)), values[:, 3:])
+    return StoredAnswers(table[:, :3], np.array(known), table[:, 3:])
 
 
 def _number(text: str) -> float:

@@ -58,26 +58,34 @@ def compute_smoothness(data: CubeData) -> tuple[Values, Array]:
     """
     dim = data.lattice.dim
     wavelengths = data.sensor.wavelengths
-    nodes = np.arange(dim**3).reshape(dim, dim, dim)
-    # Steps to each node from the one before it along blue, green and red; NaN where one
-    # of the two is absent
-    steps = np.full((dim, 3, dim, dim), np.nan)
-    before = np.full((dim, dim, len(wavelengths)), np.nan)
-    for red, plane in enumerate(nodes):
-        present = data.points.present[plane]
-        spectra = np.full_like(before, np.nan)
-        coefficients = data.points.coefficients[plane[present]]
+    parts = []
+    largest = -1.0
+    steepest = np.zeros(2, dtype=np.int64)
+    absent = before = np.full((dim, dim, len(wavelengths)), np.nan)
+    for first in range(0, dim**3, dim**2):
+        nodes = first + np.arange(dim**2).reshape(dim, dim)
+        present = data.points.present[nodes]
+        if not present.any():
+            before = absent
+            continue
+        spectra = absent.copy()
+        coefficients = data.points.coefficients[nodes[present]]
         spectra[present] = reflectance(data.model, coefficients, wavelengths)
-        steps[red, 0, :, 1:] = _rms(np.diff(spectra, axis=1))
-        steps[red, 1, 1:] = _rms(np.diff(spectra, axis=0))
-        steps[red, 2] = _rms(spectra - before)
+        # Steps to each node from the one before it along blue, green and red; NaN where
+        # one of the two is absent
+        steps = np.full((3, dim, dim), np.nan)
+        steps[0, :, 1:] = _rms(np.diff(spectra, axis=1))
+        steps[1, 1:] = _rms(np.diff(spectra, axis=0))
+        steps[2] = _rms(spectra - before)
         before = spectra
-    largest = np.unravel_index(np.nanargmax(steps), steps.shape)
-    red, along, green, blue = map(int, largest)
-    high = nodes[red, green, blue]
-    steepest = np.array([high - dim**along, high])
-    known = steps[~np.isnan(steps)]
-    return known.astype(np.float32), data.lattice.target(steepest)
+        known = steps[~np.isnan(steps)]
+        parts.append(known)
+        if known.max(initial=-1.0) > largest:
+            largest = known.max()
+            along, row, column = np.argwhere(steps == largest)[0]
+            high = nodes[row, column]
+            steepest = np.array([high - dim**along, high])
+    return np.concatenate(parts).astype(np.float32), data.lattice.target(steepest)
 
 
 def _rms(differences: Array) -> Array:

@@ -2,7 +2,7 @@
 stored cubes.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Literal
 
@@ -51,26 +51,30 @@ class EntryChange:
 class RebuildDifference:
     """Differences between a stored cube and a rebuilt one."""
 
-    path: Path  # File of the stored cube
-    # Largest differences by the names in `LIMITS`, over the entries and the nodes whose
-    # spectra are well determined
-    measures: dict[str, float]
-    # Number of these nodes by status, and of all unfitted nodes
-    stored_counts: dict[str, int]
-    # Number of these nodes by status, and of all unfitted nodes
-    rebuilt_counts: dict[str, int]
-    entries: tuple[EntryChange, ...]  # Entries that differ
+    measures: dict[str, float] = field(default_factory=dict)
+    """Largest differences by the names in `LIMITS`, over the entries and the nodes
+    whose spectra are well determined.
+    """
+    status: dict[str, dict[str, int]] = field(default_factory=dict)
+    """Number of these nodes by status, and of all unfitted nodes, of the cube that is
+    ``stored`` and of the one that is ``rebuilt``.
+    """
+    entries: tuple[EntryChange, ...] = ()
+    """Entries that differ."""
 
     @property
-    def failures(self) -> tuple[str, ...]:
+    def failures(self) -> list[str]:
         """Return the measures over their limits or NaN, ``status`` if the counts
         differ, and ``entries`` likewise.
         """
-        over = [
+        failures = [
             name for name, value in self.measures.items() if not value <= LIMITS[name]
         ]
-        status = ["status"] if self.stored_counts != self.rebuilt_counts else []
-        return (*over, *status, *(["entries"] if self.entries else []))
+        if self.status and self.status["stored"] != self.status["rebuilt"]:
+            failures.append("status")
+        if self.entries:
+            failures.append("entries")
+        return failures
 
 
 def compare_rebuilt(
@@ -119,13 +123,11 @@ def compare_rebuilt(
         EntryChange(pairs.names[row], "moved", float(moved[row]))
         for row in np.flatnonzero(moved > MOVED)
     ]
-    return RebuildDifference(
-        path,
-        measures,
-        _counts(stored, compared),
-        _counts(rebuilt, compared),
-        tuple(changes),
-    )
+    status = {
+        "stored": _counts(stored, compared),
+        "rebuilt": _counts(rebuilt, compared),
+    }
+    return RebuildDifference(measures, status, tuple(changes))
 
 
 def _well_determined(data: CubeData) -> Mask:

@@ -362,7 +362,7 @@ def pending(jobs: Iterable[Job], *, inputs: Iterable[StrPath | None] = ()) -> li
     jobs : iterable of Job
         All jobs.
     inputs : iterable of path-like
-        Files that are read besides those of the jobs.
+        Further files that are read, as well as those of the jobs.
 
     Returns
     -------

@@ -109,19 +109,6 @@ def of_light(metamers, samples, rgb, **settings):
     )
 
 
-def test_lights_are_designed_like_materials(metamers, model):
-    """Colours of two paints under a lamp determine a light with the same colours."""
-    paints = [np.linspace(0, 1, 81) ** 2, np.linspace(1, 0, 81) ** 2]
-    power = illuminant(metamers.sensor, "A")
-    screen = screen_matrix(metamers.sensor)
-    found = design(
-        of_light(metamers, paints, [screen @ (power * paint) for paint in paints]),
-        model,
-    )
-    assert matrix(found).delta_e.max() < 0.1
-    assert found.powers.min() >= 0
-
-
 def test_a_goal_with_open_light_and_material_is_refused(metamers, model):
     lights = (SpectrumSpec("day", None, 0.0, np.inf), metamers.lights[1])
     with pytest.raises(PaletteError) as caught:

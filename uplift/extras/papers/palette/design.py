@@ -57,11 +57,8 @@ def design(palette: Palette, model: FactorModel) -> Design:
             and palette.light(goal.light).designed
         ):
             raise PaletteError(
-                (
-                    f"light or material of a goal must be given, got {goal}, both to "
-                    "be "
-                    "designed"
-                ),
+                f"light or material of a goal must be given, got {goal}, both to be "
+                "designed",
                 hint="give one of them, or remove the goal",
             )
     where = unknowns(palette)
@@ -92,7 +89,8 @@ class Matrix:
     target: Array  # (M, L, 3) of the goals; NaN without a goal
     obtained: Array  # (M, L, 3) by full spectra
     factor: Array  # (M, L, 3) by the factor model
-    # (M, L) ΔE00 from target to the colour that the palette fits; NaN without a goal
+    fitted: Array  # (M, L, 3) those of the two that the goals are about
+    # (M, L) ΔE00 from target to the fitted colour; NaN without a goal
     delta_e: Array
     model_error: Array  # (M, L) ΔE00 from full spectra to the factor model
     whites: Array  # (L, 3) of the perfect reflector under each light
@@ -125,15 +123,13 @@ def matrix(design: Design) -> Matrix:
         target[palette.cell(goal.material, goal.light)] = (
             design.free[goal.free] if goal.free else goal.rgb
         )
+    fitted = factor if palette.fit == "factor-model" else obtained
     return Matrix(
         target,
         obtained,
         factor,
-        delta_e_rgb(
-            palette.sensor,
-            target,
-            factor if palette.fit == "factor-model" else obtained,
-        ),
+        fitted,
+        delta_e_rgb(palette.sensor, target, fitted),
         delta_e_rgb(palette.sensor, obtained, factor),
         design.powers @ screen.T,
     )
@@ -163,11 +159,10 @@ def write_designed(design: Design, path: StrPath, *, force: bool = False) -> int
     PaletteError
         If no material can be written.
     """
+    palette = design.palette
     entries = []
     skipped = []
-    for material, values in zip(
-        design.palette.materials, design.reflectances, strict=True
-    ):
+    for material, values in zip(palette.materials, design.reflectances, strict=True):
         if not material.designed:
             continue
         if values.min() < LOWEST or values.max() > HIGHEST:
@@ -177,22 +172,14 @@ def write_designed(design: Design, path: StrPath, *, force: bool = False) -> int
             continue
         lights = [
             goal.light
-            for goal in design.palette.goals
+            for goal in palette.goals
             if goal.material == material.name and goal.weight
         ]
-        description = (
-            f"designed for its colours under {', '.join(lights)}"
-            if lights
-            else "designed"
-        )
-        entries.append(
-            Entry(
-                material.name,
-                design.palette.sensor.wavelengths,
-                values,
-                description=description,
-            )
-        )
+        description = "designed"
+        if lights:
+            description = f"designed for its colours under {', '.join(lights)}"
+        nm = palette.sensor.wavelengths
+        entries.append(Entry(material.name, nm, values, description=description))
     if skipped:
         materials = pluralise(len(skipped), "material")
         text = (

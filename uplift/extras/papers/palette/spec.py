@@ -42,6 +42,7 @@ from uplift.extras.files.spec import (
     looking_up,
     problem,
     read_spec,
+    spec_folder,
 )
 from uplift.extras.papers.palette.colours import (
     MAX_KELVIN,
@@ -141,9 +142,8 @@ def _check_light(name: str, info: ValidationInfo) -> str:
 
 def _atlas_file(name: str, info: ValidationInfo) -> StrPath:
     file_in_folder(name, info)
-    folder: SpecFolder = info.context or SpecFolder(Path())
     with looking_up():
-        return find_atlas_file(name, folder.path)
+        return find_atlas_file(name, spec_folder(info).path)
 
 
 _Weight = Annotated[NotNegative, Field(le=MAX_NUMBER)]

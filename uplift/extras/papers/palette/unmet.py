@@ -1,9 +1,9 @@
 """Goals that a design of a palette misses, and the criteria whose relaxation helps."""
 
-import dataclasses
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from operator import itemgetter
 from typing import Any
 
 import numpy as np
@@ -65,7 +65,6 @@ def unmet_goals(found: Design) -> tuple[UnmetGoal, ...]:
     """
     colours = matrix(found)
     palette = found.palette
-    fitted = colours.factor if palette.fit == "factor-model" else colours.obtained
     errors = {
         goal: float(colours.delta_e[palette.cell(goal.material, goal.light)])
         for goal in palette.goals
@@ -77,37 +76,23 @@ def unmet_goals(found: Design) -> tuple[UnmetGoal, ...]:
     unmet = []
     for goal in missed:
         cell = palette.cell(goal.material, goal.light)
-        remaining = [(name, float(delta_e[cell])) for name, delta_e in relaxed]
-        useful = _useful(goal, remaining, MAX_REMAINING * errors[goal])
-        unmet.append(UnmetGoal(goal, errors[goal], useful))
-    return (*unmet, *_too_alike(palette, fitted))
+        useful = []
+        for name, remaining in relaxed:
+            is_other = name != _weight_of(goal)
+            if is_other and remaining[cell] < MAX_REMAINING * errors[goal]:
+                useful.append((name, float(remaining[cell])))
+        useful.sort(key=itemgetter(1))
+        unmet.append(UnmetGoal(goal, errors[goal], tuple(useful[:MAX_RELAXATIONS])))
+    return (*unmet, *_too_alike(palette, colours.fitted))
 
 
 def _too_alike(palette: Palette, colours: Array) -> Iterator[UnmetGoal]:
     """Yield the pairs of materials whose colours differ too little."""
     for pair in palette.min_differences:
-        first, second = pair.materials
-        delta_e = float(
-            delta_e_rgb(
-                palette.sensor,
-                colours[palette.cell(first, pair.light)],
-                colours[palette.cell(second, pair.light)],
-            )
-        )
+        both = [colours[palette.cell(name, pair.light)] for name in pair.materials]
+        delta_e = float(delta_e_rgb(palette.sensor, *both))
         if delta_e < pair.delta_e:
             yield UnmetGoal(pair, delta_e)
-
-
-def _useful(
-    goal: ColourGoal, remaining: list[tuple[str, float]], limit: float
-) -> tuple[tuple[str, float], ...]:
-    """Relaxed criteria that bring the ΔE00 of a goal below the limit, best first."""
-    useful = []
-    for name, delta_e in remaining:
-        if name != _weight_of(goal) and delta_e < limit:
-            useful.append((name, delta_e))
-    useful.sort(key=lambda relaxation: relaxation[1])
-    return tuple(useful[:MAX_RELAXATIONS])
 
 
 def _weight_of(goal: ColourGoal) -> str:
@@ -117,19 +102,19 @@ def _weight_of(goal: ColourGoal) -> str:
 def _relaxed(palette: Palette) -> Iterator[tuple[str, Palette]]:
     """Yield the name of each criterion, and the palette without it."""
     if palette.smoothness:
-        yield "smoothness", dataclasses.replace(palette, smoothness=0.0)
+        yield "smoothness", replace(palette, smoothness=0.0)
     if palette.model_error:
-        yield "model-error", dataclasses.replace(palette, model_error=0.0)
+        yield "model-error", replace(palette, model_error=0.0)
     for name in palette.free:
         unbounded = (np.full(3, -np.inf), np.full(3, np.inf))
         yield (
             f"the range of {name}",
-            dataclasses.replace(palette, free={**palette.free, name: unbounded}),
+            replace(palette, free={**palette.free, name: unbounded}),
         )
     for spec in (*palette.lights, *palette.materials):
         if spec.designed and (math.isfinite(spec.low) or math.isfinite(spec.high)):
-            free = dataclasses.replace(spec, low=-math.inf, high=math.inf)
-            without = dataclasses.replace(
+            free = replace(spec, low=-math.inf, high=math.inf)
+            without = replace(
                 palette,
                 lights=_replaced(palette.lights, spec, free),
                 materials=_replaced(palette.materials, spec, free),
@@ -137,9 +122,9 @@ def _relaxed(palette: Palette) -> Iterator[tuple[str, Palette]]:
             yield f"the bounds of {spec.name}", without
     for goal in palette.goals:
         if goal.weight:
-            weightless = dataclasses.replace(goal, weight=0.0)
+            weightless = replace(goal, weight=0.0)
             goals = _replaced(palette.goals, goal, weightless)
-            yield _weight_of(goal), dataclasses.replace(palette, goals=goals)
+            yield _weight_of(goal), replace(palette, goals=goals)
 
 
 def _replaced(items: tuple[Any, ...], old: object, new: object) -> tuple[Any, ...]:

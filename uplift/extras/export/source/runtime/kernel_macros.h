@@ -30,25 +30,7 @@ UP_EXPANDED float uplift_number(const uplift_cube *cube, int index)
 #define UP_SPECTRA 1
 #define UP_BIN_COUNT 1024
 ${definitions}
-#define UP_DIM cube->dim
-#define UP_ENTRIES cube->entries
-#define UP_NODES cube->nodes
-#define UP_BINS cube->bins
-#define UP_LISTS cube->lists
-#define UP_BOXES cube->boxes
-#define UP_PULL cube->pull
-#define UP_SCALES cube->scales
-#define UP_LUMINANCE cube->luminance
-#define UP_FACETS cube->facets
-#define UP_FACET_COUNT cube->facet_count
-#define UP_SAMPLES cube->samples
-#define UP_FIRST cube->first
-#define UP_STEP cube->step
-#define UP_MARGIN cube->margin
-#define UP_START cube->start
-#define UP_END cube->end
-#define UP_LOW cube->low
-#define UP_SCALE cube->scale
+${fields}
 #define UP_WARP_0 cube->warp[0]
 #define UP_WARP_1 cube->warp[1]
 #define UP_WARP_2 cube->warp[2]
