@@ -298,14 +298,12 @@ def _task_of_atlases(
     limits: tuple[float, float],
     **settings: Any,
 ) -> _Task:
-    if not images:
-        given = options.given()
-        useless = [given[name] for name in OF_IMAGES if name in given]
-        if useless:
-            raise click.UsageError(
-                f"{', '.join(useless)}: no --scene image is given to which this "
-                "applies."
-            )
+    given = options.given()
+    useless = [given[name] for name in OF_IMAGES if name in given]
+    if useless and not images:
+        raise click.UsageError(
+            f"{', '.join(useless)}: no --scene image is given to which this applies."
+        )
     if output is None:
         output = _default_name(files, images, settings)
     settings["shortest"], settings["longest"] = limits
@@ -366,18 +364,20 @@ def _print_summary(cube: Cube, path: Path, seconds: float) -> None:
         facts.append(pluralise(data.atlas.looks, "look"))
     facts += [f"{path.stat().st_size / 1e6:.1f} MB", f"{seconds:.1f} s"]
     paragraph(f"{path}: {', '.join(facts)}")
-    if unrealisable := counts["unrealisable"]:
-        paragraph(
-            f"{pluralise(unrealisable, 'node')} whose colour no reflectance has: "
-            "stored with less chroma"
-        )
-    if softened := data.provenance.get("softened"):
-        paragraph(
-            f"{pluralise(softened, 'node')} moved towards neighbours: gradients near "
-            "entries would be steep under other lights"
-        )
-    if unfitted := counts["unfitted"]:
-        paragraph(
-            f"{pluralise(unfitted, 'node')} EXCEED the threshold {data.threshold:g}: "
-            "'uplift report' shows where"
-        )
+    for number, remark in (
+        (
+            counts["unrealisable"],
+            "whose colour no reflectance has: stored with less chroma",
+        ),
+        (
+            data.provenance.get("softened"),
+            "moved towards neighbours: gradients near entries would be steep under "
+            "other lights",
+        ),
+        (
+            counts["unfitted"],
+            f"EXCEED the threshold {data.threshold:g}: 'uplift report' shows where",
+        ),
+    ):
+        if number:
+            paragraph(f"{pluralise(number, 'node')} {remark}")

@@ -65,7 +65,8 @@ class Lattice:
     @cached_property
     def points(self) -> Array:
         """(dim³, 3) target RGB of every node."""
-        return self.target(np.arange(self.size))
+        grid = np.meshgrid(self.nodes, self.nodes, self.nodes, indexing="ij")
+        return np.stack(grid, axis=-1).reshape(-1, 3)
 
     def target(self, index: Indices) -> Array:
         """Target RGB (..., 3) of nodes (...)."""

@@ -261,9 +261,11 @@ def multipliers_from_moments(
     multipliers, valid = blended_multipliers(moments, _GREY_WEIGHTS, solve)
     if valid.all():
         return multipliers
-    sets = pluralise((~valid).sum(), "set")
-    problem = f"not the moments of any reflectance: {sets} of coefficients"
-    raise UpliftError(problem, code="invalid-moments")
+    raise UpliftError(
+        "not the moments of any reflectance: "
+        f"{pluralise((~valid).sum(), 'set')} of coefficients",
+        code="invalid-moments",
+    )
 
 
 def blended_multipliers(
