@@ -37,8 +37,7 @@ NEEDS = {
 HEADINGS = {
     "cube": "cube",
     "result": "result",
-    "atlas": "atlas",
-    "nodes": "nodes",
+    "changed": "changed",
     "rgb": "RGB",
     "spectra_max": "spectra",
     "spectra_rms": "rms",
@@ -240,14 +239,15 @@ def _table(records: Sequence[dict[str, Any]]) -> Table:
     rows = []
     for record in records:
         failures = record["failures"]
-        row = dict.fromkeys(HEADINGS) | {"cube": record["cube"]} | record["measures"]
+        row = dict.fromkeys(HEADINGS) | record["measures"]
+        row["cube"] = record["cube"].removesuffix(".uplift")
         row["result"] = "passed" if record["passed"] else "FAILED"
         if record["measures"]:
-            row["atlas"] = "changed" if "atlas-changed" in failures else "same"
-            row["nodes"] = "differs" if "status" in failures else "same"
+            changed = ["atlas"] * ("atlas-changed" in failures)
+            row["changed"] = ", ".join(changed + ["nodes"] * ("status" in failures))
         rows.append(row)
-    same = {"cube": "limit", "result": "", "atlas": "same", "nodes": "same"}
-    formats: dict[str, Format] = dict.fromkeys(("result", "atlas", "nodes"), _coloured)
+    same = {"cube": "limit", "result": "", "changed": ""}
+    formats: dict[str, Format] = {"result": _coloured, "changed": _coloured}
     formats |= {name: partial(_graded, limit) for name, limit in LIMITS.items()}
     return Table([*rows, same | LIMITS], HEADINGS, formats=formats)
 
@@ -263,8 +263,7 @@ def _graded(limit: float, value: float) -> Text:
 def _coloured(verdict: str) -> Text:
     from rich.text import Text
 
-    style = "bold red" if verdict in ("FAILED", "changed", "differs") else ""
-    return Text(verdict, style="green" if verdict == "passed" else style)
+    return Text(verdict, style="green" if verdict == "passed" else "bold red")
 
 
 def _print_changes(record: dict[str, Any]) -> None:
