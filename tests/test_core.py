@@ -18,7 +18,7 @@ CORE = (
 PROGRAM = """
 import sys
 from uplift.common.errors import OptionError
-from uplift.lookup import load
+from uplift.lookup.cube import load
 from uplift.pipeline.build import build
 cube = build("macbeth.txt", dim=8)
 cube.save("built.uplift")

@@ -41,9 +41,7 @@ HEADINGS = {
     "rgb": "RGB",
     "spectra_max": "spectra",
     "spectra_rms": "rms",
-    "delta_e_D65": "ΔE D65",
-    "delta_e_A": "A",
-    "delta_e_FL11": "FL11",
+    "delta_e": "ΔE00",
 }
 
 
@@ -234,22 +232,26 @@ def _check(file: str, folders: Sequence[str], progress: ProgressCallback) -> _Ch
 
 def _table(records: Sequence[dict[str, Any]]) -> Table:
     """The verdicts and every comparison, red where it failed."""
-    from uplift.extras.report.regression import LIMITS
+    from uplift.extras.report.regression import LIMITS, REGRESSION_LIGHTS
 
+    of_lights = [f"delta_e_{name}" for name in REGRESSION_LIGHTS]
     rows = []
     for record in records:
         failures = record["failures"]
-        row = dict.fromkeys(HEADINGS) | record["measures"]
-        row["cube"] = record["cube"].removesuffix(".uplift")
+        measures = record["measures"]
+        row = dict.fromkeys(HEADINGS) | measures
+        row["cube"] = record["cube"]
         row["result"] = "passed" if record["passed"] else "FAILED"
-        if record["measures"]:
+        if measures:
+            row["delta_e"] = max(measures[name] for name in of_lights)
             changed = ["atlas"] * ("atlas-changed" in failures)
             row["changed"] = ", ".join(changed + ["nodes"] * ("status" in failures))
         rows.append(row)
+    limits = LIMITS | {"delta_e": max(LIMITS[name] for name in of_lights)}
     same = {"cube": "limit", "result": "", "changed": ""}
     formats: dict[str, Format] = {"result": _coloured, "changed": _coloured}
-    formats |= {name: partial(_graded, limit) for name, limit in LIMITS.items()}
-    return Table([*rows, same | LIMITS], HEADINGS, formats=formats)
+    formats |= {name: partial(_graded, limit) for name, limit in limits.items()}
+    return Table([*rows, same | limits], HEADINGS, formats=formats)
 
 
 def _graded(limit: float, value: float) -> Text:

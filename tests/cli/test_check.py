@@ -191,7 +191,7 @@ def test_a_changed_atlas_is_explained_and_the_cube_updated(run, ask, home):
     assert changes == {"grey": "moved", "dark": "removed", "new": "added"}
     assert answer["entries"][-1]["delta_e"] > 0.5
     table = run("check cube.uplift", code=1).stdout.split("limit")[0]
-    assert table.splitlines()[-1].split()[:3] == ["cube", "FAILED", "atlas"]
+    assert table.splitlines()[-1].split()[:3] == ["cube.uplift", "FAILED", "atlas"]
     shown = run("check cube.uplift --update").stdout
     assert "mine.csv" in shown
     assert "grey: moved" in shown

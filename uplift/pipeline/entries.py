@@ -296,18 +296,19 @@ def families_of(
         outside = int((~in_unit_cube(sensor.rgb(values))).sum())
         if clips := resampled.clips:
             clipped = f"{len(clips)} spectra, first '{clips[0].name}'"
-            _warn_of_library(source, "entry-clipped", f"clipped to [0, 1]: {clipped}")
+            problem = f"clipped to [0, 1]: {clipped}"
+            _warn_of_library(source, problem, code="entry-clipped")
         if outside:
             problem = (
                 f"{outside} of {len(values)} spectra not used: their colours lie "
                 f"outside {sensor.space}"
             )
-            _warn_of_library(source, "entry-out-of-gamut", problem)
+            _warn_of_library(source, problem, code="entry-out-of-gamut")
         users.append(Family(source.name, values, SPREAD, RELATED))
     return (*shipped, *users)
 
 
-def _warn_of_library(source: Source, code: str, problem: str) -> None:
+def _warn_of_library(source: Source, problem: str, *, code: str) -> None:
     warn(UpliftWarning(f"library '{source.name}': {problem}", code=code))
 
 

@@ -10,6 +10,7 @@ import numpy as np
 from uplift.colorimetry.delta_e import delta_e_2000, delta_e_2000_weights, lab_jacobian
 from uplift.common.arrays import Array, Indices
 from uplift.common.progress import Progress, ProgressCallback
+from uplift.common.text import pluralise
 from uplift.extras.papers.wavelengths.choice import choose
 from uplift.extras.papers.wavelengths.sampling import RenderSetup, Sampling
 from uplift.lookup.cube import Cube
@@ -78,7 +79,7 @@ class Rendering:
     @property
     def name(self) -> str:
         """Short text."""
-        return f"{self.samples} wavelengths"
+        return pluralise(self.samples, "wavelength")
 
     @property
     def samples(self) -> int:
