@@ -27,9 +27,15 @@ _public_name, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)
 register("cameras", "files", "uplift.extras.colour.camera_file:read_camera")
 register("errors", "limits", "uplift.extras.looks.metamer_bounds:limit_errors")
 register("formats", "measurements", "uplift.extras.formats:FORMATS")
-register("growth", "coarse-to-fine", "uplift.extras.thesis:grow_coarse_to_fine")
-register("growth", "neighbours", "uplift.extras.thesis:grow_from_neighbours")
-register("solver", "stock", "uplift.extras.thesis:as_method")
+register(
+    "growth", "coarse-to-fine", "uplift.extras.thesis.growth_coarse:grow_coarse_to_fine"
+)
+register(
+    "growth",
+    "neighbours",
+    "uplift.extras.thesis.growth_neighbours:grow_from_neighbours",
+)
+register("solver", "stock", "uplift.extras.thesis.stock_solvers:as_method")
 register("looks", "targets", "uplift.extras.looks.targets:targets_of")
 register("spaces", "of OpenColorIO", "uplift.extras.colour.spaces:look_up_space")
 register("scene", "images", "uplift.extras.texture.scene_colours:as_images")

@@ -1,5 +1,7 @@
 """Photographs under several lights: spectra of materials that have one RGB, and
 differ: answers that several photographs decide, and samples where nothing does.
+
+Textures from their pictures are in `uplift.extras.texture`.
 """
 
 import lazy_loader
