@@ -232,7 +232,8 @@ def _check(file: str, folders: Sequence[str], progress: ProgressCallback) -> _Ch
 
 def _table(records: Sequence[dict[str, Any]]) -> Table:
     """The verdicts and every comparison, red where it failed."""
-    from uplift.extras.report.regression import LIMITS, REGRESSION_LIGHTS
+    from uplift.extras.colour.light_sets import REGRESSION_LIGHTS
+    from uplift.extras.report.regression import LIMITS
 
     of_lights = [f"delta_e_{name}" for name in REGRESSION_LIGHTS]
     rows = []
