@@ -6,6 +6,7 @@ import json
 import os
 from collections.abc import Sequence
 from functools import partial
+from itertools import product
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -254,17 +255,11 @@ def _print_differences(relit: Sequence[Relit], output: str, style: str) -> None:
     """Print ΔE00 of every method from the products of RGB."""
     from uplift.extras.relight.relight import RGB_PRODUCT
 
-    rows = [
-        {
-            "image": image.name,
-            "light": rendering.light,
-            "spectra": spectra,
-            **rendering.errors((RGB_PRODUCT, spectra)),
-        }
-        for image in relit
-        for rendering in image.renderings
-        for spectra in image.methods[1:]
-    ]
+    rows = []
+    for image in relit:
+        for rendering, spectra in product(image.renderings, image.methods[1:]):
+            row = {"image": image.name, "light": rendering.light, "spectra": spectra}
+            rows.append(row | rendering.errors((RGB_PRODUCT, spectra)))
     table = Table(rows, HEADINGS, digits=".2f")
     print_result(style, {"output": output, "differences": rows}, table)
     if style != "json":

@@ -59,9 +59,9 @@ def passes_tables(
     numbers = [("centre, nm", list(passes.bands.centres))]
     numbers += [(light.name, light.numbers.tolist()) for light in passes.lights]
     numbers += others.items()
-    rows = [
-        {"numbers of": name} | row for name, values in numbers for row in _rows(values)
-    ]
+    rows = []
+    for name, values in numbers:
+        rows += [{"numbers of": name} | row for row in _rows(values)]
     bands = Table(
         sorted(rows, key=lambda row: row["pass"]),
         _headings("pass", "numbers of", *CHANNELS),
@@ -88,12 +88,20 @@ def print_numbers(rows: Iterable[tuple[list[float], list[float]]], style: str) -
         print_json([{"rgb": rgb, "passes": _triples(values)} for rgb, values in rows])
         return
     table = Table(
-        ({"rgb": rgb} | row for rgb, values in rows for row in _rows(values)),
+        _rows_of_colours(rows),
         {"rgb": "linear RGB", **_headings("pass", *CHANNELS)},
         digits=".6g",
         formats={"rgb": ".6f"},
     )
     print_result(style, None, table)
+
+
+def _rows_of_colours(
+    rows: Iterable[tuple[list[float], list[float]]],
+) -> Iterator[dict[str, Any]]:
+    for rgb, values in rows:
+        for row in _rows(values):
+            yield {"rgb": rgb} | row
 
 
 def _triples(numbers: list[float]) -> list[list[float]]:

@@ -4,6 +4,7 @@ import json
 import subprocess
 import sys
 from dataclasses import replace
+from itertools import chain
 
 import numpy as np
 import pytest
@@ -145,7 +146,8 @@ def test_options_limit_the_recipes(ask, run, paints):
         assert len(recipe["paints"]) <= 2
         assert sum(paint["parts"] for paint in recipe["paints"]) <= 9
     few = ask(words, "--paint", "white", "--paint", "blue")
-    names = {paint["name"] for row in few["recipes"] for paint in row["paints"]}
+    used = chain(*(row["paints"] for row in few["recipes"]))
+    names = {paint["name"] for paint in used}
     assert names == {"white", "blue"}
     thin = ask(words, "--thickness", 0, "--ground", "#405060")
     assert thin["recipes"][0]["delta_e"]["D65"] < 0.1

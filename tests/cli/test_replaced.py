@@ -2,6 +2,8 @@
 them.
 """
 
+from itertools import chain
+
 import pytest
 from uplift_cli.main import main
 from uplift_cli.replaced import REPLACED
@@ -25,7 +27,7 @@ def test_commands_run_under_old_names_with_a_note(run, old, new):
 def test_old_options_are_errors_with_the_new_one(run, command, old):
     new = REPLACED[f"{command} {old}"]
     params = commands(main)[command].params
-    known = {option for param in params for option in param.opts}
+    known = set(chain(*(param.opts for param in params)))
     assert old not in known
     if new.startswith("--"):
         assert new.partition(",")[0] in known

@@ -1,6 +1,7 @@
 """Invented paints, and samples of them as if measured."""
 
 from dataclasses import replace
+from itertools import product
 
 import numpy as np
 
@@ -16,7 +17,7 @@ NAMES = ("white", "yellow", "red", "blue")
 OIL = Surface(0.04, 0.6)
 SPREAD = (0.002, 0.005)
 """Standard deviation of a careful measurement: of all values, and relative to them."""
-FILMS = tuple((paint, 0.5, ground) for paint in range(3) for ground in (0.0, 0.9))
+FILMS = tuple((paint, 0.5, ground) for paint, ground in product(range(3), (0.0, 0.9)))
 """Films of the first three samples of `plan`, on a black and a light ground."""
 
 

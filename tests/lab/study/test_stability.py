@@ -59,11 +59,12 @@ def test_sample_covers_every_value_of_every_axis():
     assert len(models) == len(design.variants)
 
 
+def values_of(atlas):
+    return np.array([entry.values for entry in atlas])
+
+
 def test_atlases_are_crowded_spiky_and_noisy(sensor):
-    crowded, spiky, noisy = (
-        np.array([entry.values for entry in atlas])
-        for atlas in synthetic_atlases().values()
-    )
+    crowded, spiky, noisy = map(values_of, synthetic_atlases().values())
     lab = rgb_to_lab(sensor, sensor.rgb(crowded))
     distance = np.linalg.norm(lab[:, None] - lab, axis=-1) + 1e3 * np.eye(len(lab))
     assert np.median(distance.min(axis=1)) < 1

@@ -8,7 +8,7 @@ import re
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from decimal import Decimal
-from itertools import product
+from itertools import chain, product
 from pathlib import Path
 from string import Template
 from typing import Any
@@ -175,7 +175,7 @@ def _reader_words() -> dict[str, Any]:
     primes = list(filter(_is_prime, range(2, LARGEST_PRIME + 1)))
     warps = []
     for name, terms in WARPS.items():
-        numbers = [number for term in terms for number in term]
+        numbers = list(chain(*terms))
         numbers += [0.0] * (NUMBERS_OF_WARP - len(numbers))
         warps.append(f'{{"{name}", {{{", ".join(map(repr, numbers))}}}}}')
     return {

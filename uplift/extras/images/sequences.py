@@ -64,10 +64,11 @@ def pair_frames(sequences: Sequence[Sequence[str]]) -> list[tuple[str, ...]]:
     if len(columns) == 1 or (is_single and (is_named or is_one)):
         return list(zip(*columns, strict=True))
     _check_same([", ".join(sources) for sources in sequences], frames)
-    tables = [
+    by_frame = [
         dict(zip(*pair, strict=True)) for pair in zip(frames, columns, strict=True)
     ]
-    return [tuple(table[frame] for table in tables) for frame in frames[0]]
+    sorted_columns = [map(table.__getitem__, frames[0]) for table in by_frame]
+    return list(zip(*sorted_columns, strict=True))
 
 
 def _matched(pattern: str, path: str) -> tuple[str, ...]:

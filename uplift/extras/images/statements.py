@@ -161,10 +161,7 @@ def _tags(file: BinaryIO) -> dict[str, Any]:
     first = read(ImageFileDirectory_v2(head).next)
     exif = read(first.get(EXIF))
     index = read(exif.get(INTEROPERABILITY)).get(INDEX)
-    tags = {
-        name: directory[tag]
-        for directory in (first, exif)
-        for tag, name in TAGS.items()
-        if tag in directory
-    }
+    tags = dict[str, Any]()
+    for directory in (first, exif):
+        tags |= {name: directory[tag] for tag, name in TAGS.items() if tag in directory}
     return tags if index is None else tags | {"InteroperabilityIndex": index}

@@ -3,6 +3,7 @@ checked.
 """
 
 from itertools import chain
+from operator import attrgetter
 from typing import Annotated, Literal, Self
 
 import numpy as np
@@ -133,11 +134,10 @@ class _PaintsFile(SpecModel):
 
     def pigment(self, absorption: str, scattering: str) -> Pigment | None:
         """Return the rows (P, N) of two keys; None if a paint lacks one."""
-        keys = (absorption, scattering)
-        rows = [[getattr(paint, key) for paint in self.paints] for key in keys]
-        if any(values is None for values in chain(*rows)):
+        rows = list(map(attrgetter(absorption, scattering), self.paints))
+        if any(row is None for row in chain(*rows)):
             return None
-        return Pigment(*map(np.array, rows))
+        return Pigment(*map(np.array, zip(*rows, strict=True)))
 
 
 def _are_even(nm: Array) -> bool:

@@ -123,9 +123,9 @@ def measure_changes(
         ]
     models[fine.warp].insert(0, replace(fine, model=Sigmoid.name, coefficients=3))
     probe = replace(reference, coefficients=PROBE)
-    lattices = [
-        [replace(probe, dim=dim, axis=axis) for dim in grid.dims] for axis in grid.axes
-    ]
+    lattices = []
+    for axis in grid.axes:
+        lattices.append([replace(probe, dim=dim, axis=axis) for dim in grid.dims])
     return CubeChanges(
         base,
         changes("models of spectra", list(models.values()), fine),
