@@ -146,7 +146,7 @@ def compile_reader(folder: Path) -> Command:
     """Compile the program with both sanitizers."""
     write_header(folder / HEADER, force=True)
     (folder / "main.c").write_text(MAIN)
-    options = ("-O1", "-g", *SANITIZED, "-fsanitize=float-cast-overflow")
+    options = ("-O0", "-g", *SANITIZED, "-fsanitize=float-cast-overflow")
     command = ["cc", *options, "main.c", "-o", "main", "-lm"]
     subprocess.run(command, cwd=folder, check=True)
     return (folder / "main",)

@@ -127,6 +127,6 @@ def program(*options: str) -> Path:
     folder = Path(tempfile.mkdtemp(dir=FOLDER.name))
     write_header(folder / HEADER)
     (folder / "main.c").write_text(MAIN)
-    command = ["cc", "-O1", *options, "main.c", "-o", "main", "-lm"]
+    command = ["cc", "-O0", *options, "main.c", "-o", "main", "-lm"]
     subprocess.run(command, cwd=folder, check=True)
     return folder / "main"
