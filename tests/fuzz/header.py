@@ -17,6 +17,7 @@ from pathlib import Path
 import numpy as np
 
 import uplift
+from tests.compiling import compile_in
 from tests.cube.cube_files import forge
 from tests.fuzz.commands import KEPT
 from tests.fuzz.fuzzing import Random, Seeds, choose, mutate
@@ -147,9 +148,7 @@ def compile_reader(folder: Path) -> Command:
     write_header(folder / HEADER, force=True)
     (folder / "main.c").write_text(MAIN)
     options = ("-O0", "-g", *SANITIZED, "-fsanitize=float-cast-overflow")
-    command = ["cc", *options, "main.c", "-o", "main", "-lm"]
-    subprocess.run(command, cwd=folder, check=True)
-    return (folder / "main",)
+    return (compile_in(folder, "cc", *options),)
 
 
 def run(program: Command, numbers: range, folder: Path) -> Counter[str]:

@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
+from tests.compiling import compile_in
 from uplift.common.arrays import Array
 from uplift.cube.data import CubeData
 from uplift.extras.export.program import cube_program
@@ -104,9 +105,4 @@ def _compiled(text: str, main: str) -> Path:
     folder = Path(tempfile.mkdtemp(dir=FOLDER.name))
     (folder / "cube.h").write_text(text)
     (folder / "main.c").write_text(main)
-    subprocess.run(
-        ["cc", "-std=c99", "-O1", "-w", "main.c", "-o", "main", "-lm"],
-        cwd=folder,
-        check=True,
-    )
-    return folder / "main"
+    return compile_in(folder, "cc", "-std=c99", "-O1", "-w")

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
+from tests.compiling import compile_in
 from tests.parts import CC, SANITIZED, SANITIZERS, need
 from uplift.common.arrays import StrPath
 from uplift.extras.export.runtime import HEADER, write_header
@@ -127,6 +128,4 @@ def program(*options: str) -> Path:
     folder = Path(tempfile.mkdtemp(dir=FOLDER.name))
     write_header(folder / HEADER)
     (folder / "main.c").write_text(MAIN)
-    command = ["cc", "-O0", *options, "main.c", "-o", "main", "-lm"]
-    subprocess.run(command, cwd=folder, check=True)
-    return folder / "main"
+    return compile_in(folder, "cc", "-O0", *options)

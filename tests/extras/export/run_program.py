@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 
 from benchmarks.browser import browser
+from tests.compiling import compile_in
 from tests.helpers import output_of
 from tests.parts import CC, CHROMIUM, CXX, GLSLANG, NVCC, VULKAN, need, vulkan_device
 from uplift.extras.processes import call_in_child
@@ -164,13 +165,9 @@ def _compiled(path, rgb, wavelengths, compiler, call, load):
     )
     (folder / "main.c").write_text(text)
     casts = ["-Wold-style-cast"] if compiler[0] == "c++" else []
-    subprocess.run(
-        [compiler[0], *STRICT, *compiler[1:], *casts, "main.c", "-o", "main", "-lm"],
-        cwd=folder,
-        check=True,
-    )
+    program = compile_in(folder, compiler[0], *STRICT, *compiler[1:], *casts)
     done = subprocess.run(
-        [folder / "main"],
+        [program],
         cwd=folder,
         input=rgb.astype(np.float32).tobytes(),
         capture_output=True,

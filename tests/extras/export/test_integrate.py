@@ -10,6 +10,7 @@ import OpenImageIO
 import pytest
 from numpy.testing import assert_allclose
 
+from tests.compiling import compile_in
 from tests.helpers import output_of
 from tests.parts import CC, CXX, MITSUBA, NODE, SANITIZED, SANITIZERS, need
 from uplift.extras import texture
@@ -56,8 +57,8 @@ def test_c_and_cpp(folder, small_cube, compiler, language, part):
     write_program(small_cube.data, folder / "paints.h")
     (folder / "main.c").write_text(code("C and C\\+\\+", "c"))
     options = ("-x", language, "-O0", *SANITIZED)
-    output_of(compiler, *options, "main.c", "-o", "main", "-lm")
-    wavelengths, *found = np.loadtxt(output_of("./main").splitlines()).T
+    program = compile_in(folder, compiler, *options)
+    wavelengths, *found = np.loadtxt(output_of(program).splitlines()).T
     assert len(wavelengths) == 7
     expected = small_cube.reflectance(
         [COLOURS[0], *COLOURS], wavelengths, mode="spectra"
@@ -69,8 +70,8 @@ def test_cube_files_at_run_time(folder, small_cube):
     need(CC, SANITIZERS)
     write_header(folder / "uplift.h")
     (folder / "main.c").write_text(code("Cube files at run time", "c"))
-    output_of("cc", "-O0", *SANITIZED, "main.c", "-o", "main", "-lm")
-    wavelengths, *found = np.loadtxt(output_of("./main").splitlines()).T
+    program = compile_in(folder, "cc", "-O0", *SANITIZED)
+    wavelengths, *found = np.loadtxt(output_of(program).splitlines()).T
     expected = small_cube.reflectance(COLOURS, wavelengths, mode="spectra")
     assert_allclose(found, expected, atol=2e-5)
 

@@ -8,6 +8,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 import uplift
+from tests.compiling import compile_in
 from tests.extras.export import run_program
 from tests.fuzz.builds import stay
 from tests.fuzz.programs import c_reflectances
@@ -244,14 +245,8 @@ ROW = (np.arange(63, dtype=np.float32) * 7 % 33 / 32).reshape(21, 3)
 def run_c(code, folder, *options, compiler="cc"):
     need({"cc": CC, "clang": CLANG}[compiler])
     (folder / "main.c").write_text(code)
-    subprocess.run(
-        [compiler, *run_program.STRICT, *options, "main.c", "-o", "main", "-lm"],
-        cwd=folder,
-        check=True,
-    )
-    return subprocess.run(
-        [folder / "main"], cwd=folder, capture_output=True, check=True
-    ).stdout
+    program = compile_in(folder, compiler, *run_program.STRICT, *options)
+    return subprocess.run([program], cwd=folder, capture_output=True, check=True).stdout
 
 
 @pytest.mark.parametrize(("mode", "count"), [("spectra", 2), ("moments", 3)])

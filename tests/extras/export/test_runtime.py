@@ -12,6 +12,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 import uplift
+from tests.compiling import compile_in
 from tests.cube.cube_files import forge
 from tests.extras.export.run_header import OK, Answers, answers, open_result
 from tests.extras.export.run_module import module_answers, module_result
@@ -174,8 +175,7 @@ def test_compilers_are_silent(tmp_path, compiler):
     write_header(tmp_path / "uplift.h")
     main = '#define UPLIFT_IMPLEMENTATION\n#include "uplift.h"\n#include "uplift.h"\n'
     (tmp_path / "main.c").write_text(main)
-    command = [compiler[0], *STRICT, *compiler[1:], "-c", "main.c", "-o", "main.o"]
-    subprocess.run(command, cwd=tmp_path, check=True)
+    compile_in(tmp_path, compiler[0], *STRICT, *compiler[1:], "-c", output="main.o")
 
 
 def digit(name):
@@ -308,8 +308,7 @@ int main(int count, char **words)
 def test_threads_share_an_open_cube(repository, tmp_path):
     need(CC)
     write_header(tmp_path / "uplift.h")
-    (tmp_path / "threads.c").write_text(THREADS)
-    command = ["cc", "-O1", "-pthread", "threads.c", "-o", "threads", "-lm"]
-    subprocess.run(command, cwd=tmp_path, check=True)
+    (tmp_path / "main.c").write_text(THREADS)
+    program = compile_in(tmp_path, "cc", "-O1", "-pthread")
     cube = repository / "cubes" / "moments-8-macbeth.uplift"
-    subprocess.run([tmp_path / "threads", cube], check=True, timeout=60)
+    subprocess.run([program, cube], check=True, timeout=60)

@@ -11,6 +11,7 @@ import subprocess
 import numpy as np
 import pytest
 
+from tests.compiling import compile_in
 from tests.extras.export.run_program import STRICT, draw, padded
 from tests.helpers import output_of
 from tests.parts import CC, CHROMIUM, CXX, NODE, SANITIZED, SANITIZERS, need
@@ -96,10 +97,9 @@ def run_c(path, host, given, compiler="c"):
     need(part)
     folder = path.parent
     (folder / "main.c").write_text(host)
-    command = [*command, *STRICT, "main.c", "-o", "main", "-lm"]
-    subprocess.run(command, cwd=folder, check=True)
+    program = compile_in(folder, *command, *STRICT)
     done = subprocess.run(
-        [folder / "main"], input=given.tobytes(), capture_output=True, check=True
+        [program], input=given.tobytes(), capture_output=True, check=True
     )
     return np.frombuffer(done.stdout, given.dtype)
 

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 import uplift
+from tests.compiling import compile_in
 from tests.helpers import output_of
 from tests.parts import CC, GLSLANG, NODE, need
 from uplift.extras.colour.srgb import hex_codes
@@ -44,8 +45,8 @@ def test_c(folder):
         f"{{\nfloat brush[{brush}}}\n"
     )
     (folder / "main.c").write_text(main.replace("int main", stroke + "int main"))
-    output_of("cc", "-O1", "main.c", "-o", "main", "-lm", cwd=folder)
-    assert as_hex(output_of(folder / "main")) == GREEN
+    program = compile_in(folder, "cc", "-O1")
+    assert as_hex(output_of(program)) == GREEN
 
 
 def test_glsl(folder):
