@@ -32,7 +32,7 @@ LARGEST_STEP = 0.92
 exceed the step under the light of the build.
 """
 ROUNDS = 3
-"""Of finding the share of its own spectrum: the lattice around has steps too."""
+"""Of finding the share that an entry keeps: the lattice around has steps too."""
 DIRECTIONS = np.concatenate([2 * CORNERS - 1, np.eye(3), -np.eye(3)])
 """(14, 3) ramps from an entry: of all channels up or down, and of each."""
 
