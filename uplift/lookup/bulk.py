@@ -123,7 +123,7 @@ def spectra(
 ) -> Sampler:
     """Prepare a cube for reflectances in mode ``spectra``, accurate to 1e-6.
 
-    The table takes 4 · dim³ · N bytes. A colour reads eight of its rows (32 · N bytes),
+    The table takes 4 · dim³ · N bytes. A colour reads four of its rows (16 · N bytes),
     in an entry box one more.
 
     Parameters
