@@ -3,15 +3,17 @@
 import re
 import sys
 from types import SimpleNamespace
+from unittest.mock import MagicMock
 
 import numpy as np
-import OpenEXR
 import pytest
 from numpy.testing import assert_allclose
 
+from tests.extras.texture.conftest import channels, planes, write_exr
 from tests.helpers import run_python
 from tests.parts import BLENDER, need
-from uplift.extras.scene import passes as library
+from uplift.extras.scene.passes.decoder import decoder as make_decoder
+from uplift.extras.scene.passes.recipe import RECIPES
 
 COMPOSE = """
 import sys
@@ -57,23 +59,21 @@ NUMBERS = np.array([0.3, 0.5, 0.2, 0.9, 0.4, 0.7])
 @pytest.fixture
 def decoder(two_passes):
     """A decoder to ACEScg."""
-    return library.decoder(two_passes, space="ACEScg")
+    return make_decoder(two_passes, space="ACEScg")
 
 
-def test_text(decoder):
-    text = library.plain_recipe(decoder)
-    found = re.findall(r"[RGB] = (\S+) R (\S+) G (\S+) B", text)
-    matrices = np.array(found, dtype=float).reshape(2, 3, 3)
-    decoded = matrices[0] @ NUMBERS[:3] + matrices[1] @ NUMBERS[3:]
-    assert_allclose(decoded, decoder.matrix @ NUMBERS, atol=1e-6)
-
-
-def test_nuke(decoder):
-    text = library.nuke_recipe(decoder)
-    rows = re.findall(r"\{(-?[\d.]+) (-?[\d.]+) (-?[\d.]+)\}", text)
-    matrices = np.array(rows, dtype=float).reshape(2, 3, 3)
+@pytest.mark.parametrize(
+    ("tool", "row"),
+    [
+        ("text", r"[RGB] = (\S+) R (\S+) G (\S+) B"),
+        ("nuke", r"\{(-?[\d.]+) (-?[\d.]+) (-?[\d.]+)\}"),
+    ],
+)
+def test_texts_have_the_matrices(decoder, tool, row):
+    text = RECIPES[tool](decoder)
+    matrices = np.array(re.findall(row, text), dtype=float).reshape(2, 3, 3)
     assert_allclose(np.concatenate(matrices, axis=1), decoder.matrix, atol=1e-6)
-    assert text.count("Merge2") == 1
+    assert text.count("Merge2") == (tool == "nuke")
     assert text.count("{") == text.count("}")
 
 
@@ -94,79 +94,65 @@ class Socket:
 class Node:
     """A node of the compositor, as far as the script uses it."""
 
-    def __init__(self, kind, enter):
+    def __init__(self, kind):
         self.kind = kind
-        self.operation = ""
         self.inputs = [Socket() for _ in range(4)]
         if kind == "NodeGroupInput":
-            self.outputs = [Socket(lambda rgb=rgb: rgb) for rgb in enter]
+            self.outputs = [Socket(lambda: NUMBERS[:3]), Socket(lambda: NUMBERS[3:])]
         elif kind == "CompositorNodeSeparateColor":
             self.outputs = [
-                Socket(lambda channel=channel: self.inputs[0].value()[channel])
+                Socket(lambda channel=channel: self.values()[0][channel])
                 for channel in range(3)
             ]
         elif kind == "CompositorNodeCombineColor":
-            self.outputs = [
-                Socket(lambda: [socket.value() for socket in self.inputs[:3]])
-            ]
+            self.outputs = [Socket(lambda: self.values()[:3])]
         else:
             self.outputs = [Socket(self.multiply_add)]
 
+    def values(self):
+        return [socket.value() for socket in self.inputs]
+
     def multiply_add(self):
         assert self.operation == "MULTIPLY_ADD"
-        first, second, third = (socket.value() for socket in self.inputs[:3])
+        first, second, third, _ = self.values()
         return first * second + third
 
 
 @pytest.mark.parametrize("own_math", [True, False])
 def test_blender(decoder, monkeypatch, own_math):
     """The script makes nodes that compute the picture."""
-    nodes = []
-    links = []
+    nodes = {}
 
     def new_node(kind):
-        nodes.append(Node(kind, (NUMBERS[:3], NUMBERS[3:])))
-        return nodes[-1]
+        node = Node(kind)
+        nodes.setdefault(kind, []).append(node)
+        return node
 
-    def new_link(source, target):
-        links.append((source, target))
-        target.source = source
-
-    sockets = []
-    tree = SimpleNamespace(
-        nodes=SimpleNamespace(new=new_node),
-        links=SimpleNamespace(new=new_link),
-        interface=SimpleNamespace(
-            new_socket=lambda name, **kind: sockets.append((name, kind["in_out"]))
-        ),
-    )
-    types = SimpleNamespace(**({"CompositorNodeMath": Node} if own_math else {}))
-    groups = SimpleNamespace(new=lambda name, kind: tree)
-    bpy = SimpleNamespace(data=SimpleNamespace(node_groups=groups), types=types)
+    tree = MagicMock()
+    tree.nodes.new = new_node
+    tree.links.new = lambda source, target: setattr(target, "source", source)
+    bpy = SimpleNamespace(data=MagicMock(), types=SimpleNamespace())
+    bpy.data.node_groups.new.return_value = tree
+    if own_math:
+        bpy.types.CompositorNodeMath = Node
     monkeypatch.setitem(sys.modules, "bpy", bpy)
-    exec(library.blender_recipe(decoder), {})
-    leave = next(node for node in nodes if node.kind == "NodeGroupOutput")
-    assert_allclose(leave.inputs[0].value(), decoder.matrix @ NUMBERS, atol=1e-6)
-    kinds = {node.kind for node in nodes if "Math" in node.kind}
-    assert kinds == {"CompositorNodeMath" if own_math else "ShaderNodeMath"}
-    assert [kind for _, kind in sockets] == ["INPUT", "INPUT", "OUTPUT"]
+    exec(RECIPES["blender"](decoder), {})
+    (leave,) = nodes["NodeGroupOutput"]
+    assert_allclose(leave.values()[0], decoder.matrix @ NUMBERS, atol=1e-6)
+    assert ("CompositorNodeMath" if own_math else "ShaderNodeMath") in nodes
 
 
 def test_blender_itself(decoder, tmp_path):
     """The node group in Blender, where it is installed, decodes pictures."""
     need(BLENDER)
     values = np.random.default_rng(0).random((6, 8, 6)).astype(np.float32)
-    for number in (1, 2):
-        planes = np.moveaxis(values[..., 3 * number - 3 : 3 * number], -1, 0)
-        channels = {
-            name: np.ascontiguousarray(plane)
-            for name, plane in zip("RGB", planes, strict=True)
-        }
-        OpenEXR.File({}, channels).write(str(tmp_path / f"a.{number}.exr"))
+    write_exr(tmp_path / "a.1.exr", planes(values[..., :3]))
+    write_exr(tmp_path / "a.2.exr", planes(values[..., 3:]))
     script = tmp_path / "decode.py"
-    script.write_text(library.blender_recipe(decoder), encoding="utf-8")
+    script.write_text(RECIPES["blender"](decoder), encoding="utf-8")
     run_python(COMPOSE, script, tmp_path, 8, 6)
-    file = OpenEXR.File(str(tmp_path / "decoded.exr"), separate_channels=True)
-    found = {name[-1]: channel.pixels for name, channel in file.channels().items()}
+    found = {
+        name[-1]: plane for name, plane in channels(tmp_path / "decoded.exr").items()
+    }
     decoded = np.stack([found[name] for name in "RGB"], axis=-1)
     assert_allclose(decoded, values @ decoder.matrix.T, atol=1e-5)
