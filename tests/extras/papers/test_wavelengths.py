@@ -4,7 +4,7 @@ other, and invalid input.
 
 import numpy as np
 import pytest
-from numpy.testing import assert_allclose, assert_array_equal
+from numpy.testing import assert_allclose
 
 from tests.helpers import raises
 from uplift.colorimetry.delta_e import delta_e_2000, lab
@@ -16,12 +16,7 @@ from uplift.extras.papers.wavelengths import (
     grid,
     make_setup,
 )
-from uplift.extras.papers.wavelengths.optimise import (
-    MAX_FITTED_PAIRS,
-    FitProblem,
-    fit_at,
-    optimise,
-)
+from uplift.extras.papers.wavelengths.optimise import FitProblem, optimise
 from uplift.extras.papers.wavelengths.sampling import evaluate, midpoints, prefiltered
 
 ONES = np.ones((1, 391))
@@ -125,26 +120,6 @@ def test_fit_beats_other_methods_on_unseen_materials(smooth, spiky):
         for method in ("meyer", "uniform", "bins"):
             other = choose(unseen, count=8, method=method).errors.mean()
             assert factor * error < other, method
-
-
-def test_one_material_and_more_materials_than_are_fitted(checker):
-    one = choose(make_setup(checker[:1], ["FL11"]), count=4)
-    assert one.errors.max() < 0.2
-    factors = np.linspace(0.05, 1, MAX_FITTED_PAIRS // 24 + 2)
-    shades = np.concatenate([checker * factor for factor in factors])
-    many = choose(make_setup(shades, ["D65"]), count=4)
-    assert many.errors.shape == (1, len(shades))
-    assert many.errors.mean() < 2
-
-
-def test_weights_for_given_wavelengths_beat_prefiltering(spiky):
-    nm = midpoints(7)
-    result = fit_at(spiky, nm[::-1])
-    assert_array_equal(result.wavelengths, nm)
-    assert min(result.to_xyz.min(), result.powers.min()) >= 0
-    error = evaluate(spiky, result).mean()
-    unfitted = evaluate(spiky, prefiltered(spiky, nm)).mean()
-    assert evaluate(spiky, optimise(spiky, 7)).mean() < error < unfitted / 1.5
 
 
 @pytest.mark.parametrize("nm", [[], [500, 500], [300, 500], [[500]], [np.nan]])
