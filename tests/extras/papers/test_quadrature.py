@@ -5,7 +5,7 @@ them, and undefined orders.
 import numpy as np
 import pytest
 from numpy.polynomial import legendre
-from numpy.testing import assert_allclose, assert_array_equal
+from numpy.testing import assert_array_equal
 
 from tests.helpers import raises
 from uplift.common.errors import OptionError
