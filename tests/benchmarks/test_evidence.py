@@ -34,12 +34,6 @@ def test_closed_cells_keep_the_white(count):
         assert_allclose(white[0], xyz_weights().sum(axis=0), rtol=2e-3)
 
 
-def test_a_sample_on_a_border_counts_twice():
-    line = np.eye(401)[25:26]  # 405 nm: a border of 16 cells, and within one of 15
-    for count, times in ((16, 2), (15, 1)):
-        assert np.count_nonzero(closed(count).encode_light(line)) == times
-
-
 def test_thesis_tables_have_the_printed_values():
     row = {"lights": "spiky", "representation": "CS15"}
     other = row | {"representation": "TM9"}

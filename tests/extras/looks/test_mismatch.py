@@ -49,7 +49,9 @@ def test_extremes_are_those_of_a_linear_program(sensor, name, second):
     assert ((found.reflectance >= 0) & (found.reflectance <= 1)).all()
     between = (found.reflectance > 0) & (found.reflectance < 1)
     assert (between.sum(axis=1) <= len(matrix)).all()
-    best = [-linear_program(matrix, *each).fun for each in zip(values, response)]
+    best = -np.array(
+        [linear_program(matrix, values[row], response[row]).fun for row in range(8)]
+    )
     assert_allclose((response * found.reflectance).sum(axis=1), best, atol=1e-8)
 
 
@@ -77,7 +79,7 @@ def test_directions_are_unit_vectors_of_a_closed_mesh(divisions):
 def test_the_outline_of_a_mesh_is_that_of_its_projection():
     found = sphere(3)
     skew = found.directions[:, :2] * [2.0, 1.0] + 0.2 * found.directions[:, 2:]
-    moved = skew + [3.0, -2.0]
+    moved = skew + np.array([3.0, -2.0])
     limits = outline(moved, found.faces, angles=360)
     centre = moved.mean(axis=0)
     assert Path(centre + 1.01 * (limits - centre)).contains_points(moved).all()

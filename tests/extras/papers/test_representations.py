@@ -35,7 +35,6 @@ from uplift.extras.papers.representations.registry import (
 )
 from uplift.extras.papers.representations.samples import (
     hat_functions,
-    point_samples,
     wavelengths,
     xyz_weights,
 )
@@ -112,21 +111,6 @@ PS16:box:3:1 PS16:cone:3 RP2 RP4 RP15"""
 def test_unknown_representations_raise(name):
     with raises(OptionError, "option"):
         find_representation(name)
-
-
-RANDOM = np.random.default_rng(5).random((3, 401))
-
-
-@pytest.mark.parametrize("count", [4, 9, 32])
-def test_point_samples_are_linear_interpolation_both_ways(count):
-    samples = point_samples(count)
-    places = np.linspace(380, 780, count)
-    taken = samples.encode_light(RANDOM)
-    assert_allclose(
-        taken, [np.interp(places, wavelengths(), row) for row in RANDOM], rtol=1e-12
-    )
-    back = np.array([np.interp(wavelengths(), places, row) for row in taken])
-    assert_allclose(samples.xyz(taken), back @ xyz_weights(), rtol=1e-12)
 
 
 SOME = [

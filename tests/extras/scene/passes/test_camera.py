@@ -7,11 +7,8 @@ from numpy.testing import assert_allclose
 from tests.extras.scene.passes.conftest import LIGHTS
 from tests.helpers import raises
 from uplift.colorimetry import observer
-from uplift.colorimetry.camera import Camera
 from uplift.common.errors import OptionError, UnknownNameError
-from uplift.extras.scene.passes.bands import PRESETS
 from uplift.extras.scene.passes.camera import with_camera
-from uplift.extras.scene.passes.choice import fit_bands
 from uplift.extras.scene.passes.decoder import decoder
 from uplift.extras.scene.passes.file import read_passes, write_passes
 from uplift.extras.scene.passes.passes import scaled_power
@@ -38,14 +35,6 @@ def test_raw_values_are_near_those_of_spectra(passes, library):
         assert not counts["pixels-negative"]
         off = np.abs(raw - expected) / (np.abs(expected) + 1e-3)
         assert np.median(off) < 0.02, light.name
-
-
-def test_a_camera_of_matching_functions_has_xyz(library):
-    camera = Camera("eye", observer.grid(), observer.matching_functions())
-    fitted = fit_bands(PRESETS[3], library, LIGHTS)
-    made = with_camera(fitted, library, LIGHTS, camera).camera
-    white = observer.light("D65").white
-    assert_allclose(made.matrix * white[:, None], fitted.to_xyz, atol=0.05)
 
 
 def test_the_file_keeps_the_camera(passes, tmp_path):

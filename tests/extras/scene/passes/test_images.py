@@ -205,16 +205,3 @@ def test_environment_maps_are_numbers_of_lights(two_passes, tmp_path):
     expected = rgb[0] @ observer.sensor().rgb_to_xyz.T
     white = expected[:, 1:2] * observer.light("D65").white
     assert delta_e_2000(lab(decoded, white), lab(expected, white)).max() < 1
-
-
-def test_rendering_by_passes_has_the_colours_of_spectra(two_passes, cube):
-    """Light that three painted surfaces reflect, one after the other."""
-    painted = np.array([[0.7, 0.3, 0.1], [0.6, 0.6, 0.2], [0.5, 0.6, 0.7]])
-    spectra = cube.reflectance(painted, observer.grid())
-    numbers = two_passes.reflectance_numbers(spectra).prod(axis=0)
-    for light in two_passes.lights:
-        truth = observer.light(light.name)
-        xyz = truth.xyz @ spectra.prod(axis=0)
-        decoded = light.to_xyz @ (numbers * light.numbers)
-        error = delta_e_2000(lab(decoded, truth.white), lab(xyz, truth.white))
-        assert error < 1

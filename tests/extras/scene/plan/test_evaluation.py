@@ -16,7 +16,6 @@ from uplift.extras.papers.wavelengths.sampling import make_setup
 from uplift.extras.scene.plan.evaluation import (
     WORST_DELTA_E,
     EvaluationSet,
-    fit_renderings,
 )
 from uplift.extras.texture.scene_colours import Images, sample_colours
 
@@ -58,13 +57,6 @@ def test_errors_agree_with_a_slow_oracle(tests):
         ]
         assert_allclose([part.quantile, part.mean, part.largest], expected, rtol=1e-9)
     assert error.quantile == max(part.quantile for part in error.parts)
-
-
-def test_more_wavelengths_follow_while_they_lower_the_error(tests):
-    fitted = fit_renderings((3, 16), tests, 1e-3, ignore_progress)
-    errors = [rendering.error.quantile for rendering in fitted]
-    assert errors == sorted(errors, reverse=True)
-    assert [rendering.samples for rendering in fitted][:2] == [3, 16]
 
 
 def test_reference_spectra_have_no_error_and_nan_has_the_largest(tests):

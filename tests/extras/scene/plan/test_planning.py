@@ -15,7 +15,7 @@ from tests.helpers import raises
 from uplift import models
 from uplift.colorimetry import observer
 from uplift.colorimetry.delta_e import delta_e_2000, lab
-from uplift.common.errors import OutputError, PlanFileError
+from uplift.common.errors import PlanFileError
 from uplift.extras.scene import plan
 from uplift.extras.scene.plan.files import read_plan
 from uplift.extras.scene.plan.planning import no_candidate
@@ -155,15 +155,6 @@ def test_changed_and_missing_sources_are_refused(plan_file):
     with raises(PlanFileError, "file-not-found") as caught:
         read_plan(path)
     assert "scene.textures[0].path" in caught.value.problem
-
-
-def test_a_plan_is_written_where_it_can_be_read(planned, kitchen, tmp_path):
-    found, _ = planned
-    values = to_json(found, kitchen.parent.parent / "a.plan.json")
-    [image] = values["scene"]["textures"]
-    assert image["path"] == f"{kitchen.parent.name}/wood.exr"
-    with raises(OutputError, "output"):
-        to_json(found, tmp_path / "a.plan.json")
 
 
 @pytest.mark.parametrize(
