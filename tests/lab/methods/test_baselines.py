@@ -74,9 +74,7 @@ def test_metamer_means_have_their_colours():
     assert_allclose(SENSOR.rgb(spectra), TASK.rgb, atol=1e-6)
     assert spectra.min() > 0
     assert spectra.max() < 1
-
-    # No mixture of these has the colour.
-    red = np.array([[0.9, 0.05, 0.05]])
+    red = np.array([[0.9, 0.05, 0.05]])  # the colour of no mixture
     (moved,) = metamer_mean(SENSOR, MEASURED[:3], red)
     assert_allclose(SENSOR.rgb(moved), red[0], atol=1e-3)
 

@@ -55,7 +55,7 @@ def test_moments_equal_the_integrals(technique):
 
 
 @by_name(TECHNIQUES)
-@pytest.mark.parametrize("count", [0, 1, 4, 15])
+@pytest.mark.parametrize("count", [0, 4, 15])
 def test_reconstruction_has_its_moments(technique, count):
     measured = on_grid(read_atlas("tcs"), wavelengths())
     moments = technique.moments(measured, wavelengths(), count)
@@ -68,10 +68,10 @@ def test_reconstruction_has_its_moments(technique, count):
 @pytest.fixture(scope="module")
 def rows():
     """Errors of all shipped atlases together."""
-    return where(study_moments(read_atlases(), 12).rows(), atlas=ALL_ATLASES)
+    return where(study_moments(read_atlases(), 8).rows(), atlas=ALL_ATLASES)
 
 
-@pytest.mark.parametrize("floats", [3, 5, 9, 13])
+@pytest.mark.parametrize("floats", [3, 9])
 def test_mirrored_techniques_have_the_least_error(rows, floats):
     def least(name, mirrored):
         same = where(rows, floats=floats, mirrored=mirrored)
