@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from benchmarks.accuracy import largest
 from benchmarks.cameras import lab_matrix, xyz_matrix
 from benchmarks.representations import closed, enhanced, with_tables_6
 from uplift.extras.papers.representations.samples import xyz_weights
@@ -20,11 +19,6 @@ def test_known_camera_matrices_are_found_and_keep_white():
     assert_allclose(lab_matrix(raw, raw @ known.T), known, rtol=1e-6)
     noisy = raw @ known.T + 0.01 * rng.standard_normal((12, 3))
     assert_allclose(lab_matrix(raw, noisy).sum(axis=1), 1, rtol=1e-12)
-
-
-def test_the_largest_error_is_searched_for():
-    starts = np.random.default_rng(0).uniform(0, 0.5, (32, 3))
-    assert largest(lambda rgb: rgb @ [1, 2, -3], starts) == pytest.approx(3, abs=0.05)
 
 
 @pytest.mark.parametrize("count", [8, 32])

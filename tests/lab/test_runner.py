@@ -1,7 +1,5 @@
 """Tasks of measured materials, and the rows of methods at them."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 from numpy.testing import assert_array_equal
@@ -12,9 +10,7 @@ from uplift.colorimetry.delta_e import delta_e_spectra
 from uplift.lab.look_alikes import families_like
 from uplift.lab.method import PreparedMethod
 from uplift.lab.runner import (
-    Errors,
     divided,
-    join,
     measure,
     named_lights,
     spectra_of,
@@ -55,13 +51,6 @@ def test_rows_pool_the_errors_of_all_tasks(sensor):
     assert row["within_error"] == pytest.approx((actual <= 5).mean())
     assert row["within_bound"] == pytest.approx((actual <= 10).mean())
     assert rows[2]["mean"] == pytest.approx((row["mean"] + rows[1]["mean"]) / 2)
-
-
-def test_what_one_part_lacks_is_left_out():
-    part = Errors(np.ones((2, 1)))
-    joined = join([part, replace(part, stated=np.ones((2, 1, 2)))])
-    assert len(joined.delta_e) == 4
-    assert joined.stated is None
 
 
 @pytest.mark.parametrize(

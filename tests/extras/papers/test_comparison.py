@@ -11,7 +11,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 from tests.browsing import check_page
 from tests.conftest import MACBETH
-from tests.helpers import raises, warns
+from tests.helpers import raises
 from tests.pages import markers, tooltips
 from tools.render_docs import pick
 from uplift.atlas.atlas import Atlas
@@ -114,13 +114,6 @@ def test_spectra_have_the_colours_of_the_representation(checker, name):
     assert_allclose(surfaces, made.xyz(code), atol=1e-12)
     light_xyz = made.xyz(made.encode_light(smooth.powers))
     assert_allclose(powers / powers[:, 1:2], light_xyz / light_xyz[:, 1:2], atol=1e-12)
-
-
-def test_negative_lobes_of_a_filter_are_clipped_with_a_warning(checker):
-    filtered = find_representation("PF16")
-    with warns("entry-clipped"):
-        _, lights = represent(filtered, checker, read_atlas(MACBETH).names)
-    assert min(entry.values.min() for entry in lights) == 0
 
 
 def test_surfaces_count_first_then_lights_then_errors():

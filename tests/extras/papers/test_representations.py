@@ -26,8 +26,6 @@ from uplift.extras.papers.representations.composite import (
 from uplift.extras.papers.representations.filters import Filter, resampling_matrix
 from uplift.extras.papers.representations.models import (
     hero_wavelengths,
-    linear_model,
-    trigonometric_moments,
 )
 from uplift.extras.papers.representations.registry import (
     all_representations,
@@ -35,11 +33,9 @@ from uplift.extras.papers.representations.registry import (
 )
 from uplift.extras.papers.representations.samples import (
     hat_functions,
-    wavelengths,
     xyz_weights,
 )
 from uplift.extras.scene.passes.representation import rgb_passes
-from uplift.lab.study.moments import Technique
 
 
 @pytest.fixture(scope="module")
@@ -200,23 +196,6 @@ def test_spikes_multiply_exactly_on_constant_spectra(make):
     assert actual.positions.tolist() == [40, 60]
     assert_allclose(one.xyz(actual), dense(light * surface) @ xyz_weights(), rtol=1e-6)
     assert one.storage(actual).tolist() == [7 + 4]
-
-
-def test_moments_equal_the_integrals(checker):
-    actual = trigonometric_moments(9).encode_surface(checker.surfaces)
-    exact = Technique(mirrored=True, warp="none").moments(
-        checker.surfaces, wavelengths(), 8
-    )
-    assert_allclose(actual, exact, atol=2e-5)
-
-
-def test_linear_model_of_all_components_is_exact(checker):
-    power = checker.powers[:1]
-    surfaces = checker.surfaces[:5]
-    model = linear_model(6, power, surfaces)  # five products and the light
-    light = model.encode_light(np.tile(power, (5, 1)))
-    actual = model.xyz(model.multiply(light, model.encode_surface(surfaces)))
-    assert_allclose(actual, (power * surfaces) @ xyz_weights(), rtol=1e-6)
 
 
 def test_hero_wavelengths_are_unbiased_and_variance_falls_with_paths(checker):

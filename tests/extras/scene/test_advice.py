@@ -12,6 +12,7 @@ from tests.extras.texture.conftest import write_image
 from tests.helpers import raises
 from uplift.colorimetry.observer import light
 from uplift.common.errors import OptionError, TextureError
+from uplift.common.progress import ignore_progress
 from uplift.extras.scene.advice import advise, colour_areas, uncertainty
 from uplift.extras.texture.scene_colours import Images, PixelSample, sample_colours
 from uplift.fit.kriging import Kernel, posterior
@@ -92,20 +93,20 @@ def test_areas_are_those_of_the_pixels(cube, tmp_path):
     assert after.mean < chosen[0].mean_after + 1e-12
 
 
-@pytest.mark.parametrize("suffix", ["png", "exr"])
-def test_transparent_pixels_have_no_area(cube, tmp_path, suffix):
+@pytest.mark.parametrize(("suffix", "share"), [("png", 1), ("exr", 12 / 13)])
+def test_transparent_pixels_have_no_area(cube, tmp_path, suffix, share):
     rgba = np.zeros((4, 6, 4), np.float32)
     rgba[2:] = (0.5, 0.25, 0.125, 0.5)
     rgba[0, 0] = (0.6, 0.3, 0.2, 0)  # light without opacity in OpenEXR
     values = rgba if suffix == "exr" else (rgba * 255).astype(np.uint8)
     images = Images((write_image(tmp_path / f"a.{suffix}", values),))
-    found = colour_areas(images, cube.data.sensor)
-    assert found.share.max() == pytest.approx(12 / 13 if suffix == "exr" else 1)
-    samples = sample_colours(images, cube.data.sensor, (99, 99), lambda progress: None)
+    sensor = cube.data.sensor
+    assert colour_areas(images, sensor).share.max() == pytest.approx(share)
+    samples = sample_colours(images, sensor, (99, 99), ignore_progress)
     assert samples.predicting.rgb.min() > 0
     clear = write_image(tmp_path / "clear.png", np.zeros((2, 2, 4), np.uint8))
     with raises(TextureError):
-        colour_areas(Images((clear,)), cube.data.sensor)
+        colour_areas(Images((clear,)), sensor)
 
 
 @pytest.mark.parametrize("count", [0, 101])

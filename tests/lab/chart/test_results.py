@@ -58,13 +58,6 @@ def test_invalid_table_is_an_error(tmp_path, old, new):
     assert caught.value.path == file
 
 
-def test_set_up_is_part_of_the_time_of_a_call():
-    row = row_of("one", 1000, 1.0)
-    _, lights, with_set_up, *_ = criteria(64)
-    assert lights.points([row]) == {row: (1000, 1)}
-    assert with_set_up.points([row]) == {row: (1.5e9 + 64 * 1000, 1)}
-
-
 CUBES = chart_of(
     row_of("peer", 1, 1e-3),
     row_of("rough", 50, 2.0, build="build"),

@@ -16,7 +16,7 @@ from uplift.lab.methods.colour_maps import (
     prepare,
     term_exponents,
 )
-from uplift.lab.methods.metamer_mean import metamer_mean, metamers, nearest_mixture
+from uplift.lab.methods.metamer_mean import metamer_mean
 from uplift.lab.runner import Task, spectra_of, within
 
 D65 = observer.light("D65")
@@ -77,13 +77,3 @@ def test_metamer_means_have_their_colours():
     red = np.array([[0.9, 0.05, 0.05]])  # the colour of no mixture
     (moved,) = metamer_mean(SENSOR, MEASURED[:3], red)
     assert_allclose(SENSOR.rgb(moved), red[0], atol=1e-3)
-
-
-def test_the_only_metamer_is_found():
-    spectra = MEASURED[:4]
-    mixture = np.array([0.1, 0.2, 0.3, 0.4]) @ spectra
-    xyz = mixture @ D65.xyz.T
-    groups = np.arange(4)[None]
-    assert_allclose(metamers(D65, spectra, groups, xyz)[0], mixture, atol=1e-6)
-    assert len(metamers(D65, spectra, groups, 2 * D65.white)) == 0
-    assert_allclose(nearest_mixture(D65, spectra, xyz), mixture, atol=1e-6)

@@ -5,13 +5,9 @@ import pytest
 from colour.recovery import RGB_to_sd_Mallett2019, RGB_to_sd_Smits1999
 from numpy.testing import assert_allclose
 
-from tests.parts import LLVM, need
 from uplift.atlas.sources import read_atlas
 from uplift.colorimetry import observer
-from uplift.extras.processes import call_in_child
 from uplift.lab.chart.selection import select_methods
-from uplift.lab.method import NotInstalledError
-from uplift.lab.methods import mitsuba3
 from uplift.lab.methods.cubes import built_cube
 from uplift.lab.runner import divided
 
@@ -59,27 +55,6 @@ def test_float32_and_bulk_give_the_same_spectra(task, double, single):
     found = prepared(single, task)(COLOURS.astype(np.float32), AT)
     assert found.dtype == np.float32
     assert_allclose(found, prepared(double, task)(COLOURS, AT), atol=2e-6)
-
-
-def test_missing_mitsuba_is_not_installed(task, monkeypatch):
-    monkeypatch.setattr(mitsuba3, "find_spec", lambda name: None)
-    for name in ("mitsuba3-table", "mitsuba3-llvm", "jakob2019-table64"):
-        with pytest.raises(NotInstalledError, match="Mitsuba 3: pip install"):
-            prepared(name, task)
-
-
-def vectorised_and_table(task):
-    """Reflectances by Mitsuba's vectorised variant and by its table."""
-    return [
-        prepared(name, task)(COLOURS, AT)
-        for name in ("mitsuba3-llvm", "mitsuba3-table")
-    ]
-
-
-def test_vectorised_mitsuba_gives_the_reflectances_of_its_table(task):
-    need(LLVM)
-    compiled, table = call_in_child(vectorised_and_table, task, seconds=120)
-    assert_allclose(compiled, table, atol=1e-4)
 
 
 @pytest.mark.filterwarnings("ignore::uplift.UpliftWarning")

@@ -2,15 +2,12 @@
 
 import numpy as np
 import pytest
-from numpy.testing import assert_array_equal
 
-from uplift.atlas.sources import read_atlas
 from uplift.colorimetry import observer
 from uplift.colorimetry.delta_e import delta_e_spectra
 from uplift.lab.study.sensitivity import (
     CONTINUOUS_MODES,
     Change,
-    changed_atlases,
     perturb,
     perturb_answers,
 )
@@ -46,20 +43,6 @@ def test_jumps_are_found_and_only_those(width):
     jump = perturb_answers("", answer, lambda codes: codes / 255, lights)[0]["jump"]
     expected = float(delta_e_spectra(LIGHT, dark, bright))
     assert jump == pytest.approx(expected * (width < 1e-6), abs=1e-3 * expected)
-
-
-TCS = read_atlas("tcs")
-
-
-def test_atlases_are_changed_as_described():
-    first, *others = TCS
-    changes = [entries for *_, entries in changed_atlases(TCS.entries, [first.name])]
-    _, _, noisy, wrong, left_out = changes
-    pairs = zip(noisy, TCS, strict=True)
-    noise = np.array([one.values - other.values for one, other in pairs])
-    assert noise.std() == pytest.approx(0.002, rel=0.1)
-    assert_array_equal(wrong[0].values, first.values[::-1])
-    assert wrong[1:] == left_out == others
 
 
 def test_moved_share_and_radius_by_hand():

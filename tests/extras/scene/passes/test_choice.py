@@ -102,14 +102,6 @@ def test_equal_energy_has_ones(two_passes):
     assert_allclose(two_passes.light_numbers(flat), 1)
 
 
-def test_projection_serves_lights_that_were_not_fitted(library, two_passes):
-    power = scaled_power("FL7")[None]
-    paths = draw_paths(library.held_out, power, 50, 6)
-    numbers = two_passes.light_numbers(power)
-    lit = paths.numbers(two_passes.bands.weights) * numbers[:, None]
-    assert paths.errors(lit @ two_passes.to_xyz.T).mean() < 0.8
-
-
 def test_search_ends_where_no_step_helps(library):
     paths = draw_paths(library.training, power_sum(["D65"]), 40, 1)
     search = Search(paths)

@@ -7,10 +7,9 @@ import pytest
 from numpy.testing import assert_allclose
 
 from tests.extras.texture.conftest import planes, write_exr
-from tests.helpers import raises
 from uplift.colorimetry import observer
 from uplift.colorimetry.delta_e import delta_e_spectra
-from uplift.common.errors import TextureError, UpliftWarning
+from uplift.common.errors import UpliftWarning
 from uplift.common.progress import ignore_progress
 from uplift.extras.papers.wavelengths.sampling import make_setup
 from uplift.extras.scene.plan.evaluation import (
@@ -122,16 +121,3 @@ def test_rare_colours_have_a_bin_and_others_are_clipped_with_a_warning(sample):
     with pytest.warns(UpliftWarning, match="outside"):
         found = sample((50, 50), rgb)
     assert_allclose(np.sort(found.colour_bins[:, 0]), [0.25, 1], rtol=1e-6)
-
-
-def test_of_many_pixels_only_some_are_read_and_without_any_none(sample, monkeypatch):
-    limits = "uplift.extras.texture.scene_colours"
-    monkeypatch.setattr(f"{limits}.MAX_PIXELS", 1000)
-    rgb = np.random.default_rng(2).random((64, 64, 3))
-    found = sample((100, 200), rgb)
-    assert len(found.colour_bins) <= 1000
-    assert 60 < len(found.predicting.rgb) < 150
-    assert found.pixels == 4096
-    monkeypatch.setattr(f"{limits}._pixel_count", lambda path: (0, 0))
-    with raises(TextureError):
-        sample((5, 5), rgb)
