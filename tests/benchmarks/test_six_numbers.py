@@ -12,14 +12,6 @@ MATRIX = np.concatenate(
 )
 
 
-def test_mixtures_of_six_spectra_keep_all_in_their_projection():
-    random = np.random.default_rng(0)
-    mixtures = random.random((40, 6)) @ random.random((6, 81))
-    assert_allclose(six_numbers.projected(mixtures), mixtures)
-    noisy = mixtures + random.random(mixtures.shape)
-    assert np.linalg.matrix_rank(six_numbers.projected(noisy)) == 6
-
-
 def test_the_posterior_mean_is_that_of_joint_gaussians():
     """Conditioning the joint covariance of a spectrum and its numbers."""
     random = np.random.default_rng(2)

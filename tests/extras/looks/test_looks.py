@@ -122,19 +122,6 @@ GREY_AT_A = {"A": "#808080"}
 
 
 @pytest.mark.parametrize(
-    ("arguments", "code"),
-    [
-        (("#8a2a2", GREY_AT_A), "colour"),
-        (([0.1, 0.2, float("nan")], GREY_AT_A), "colour"),
-        (("#8a2a20", GREY_AT_A, "1"), "look"),
-    ],
-)
-def test_invalid_looks_are_refused(arguments, code):
-    with raises(LookError, code):
-        Look(*arguments)
-
-
-@pytest.mark.parametrize(
     ("looks", "options"),
     [
         ([RED, Look("#8a2a20", GREY_AT_A)], {}),
@@ -213,6 +200,8 @@ HEAD = '[[look]]\nrgb = "#8a2a20"\n'
             "rgb",
         ),
         (HEAD + "A = #808080", "invalid-file", "line 3"),
+        (HEAD + "A = [0.1, 0.2, nan]", "colour", "A"),
+        (HEAD + 'A = "#808080"\nweight = "1"', "look", "weight"),
     ],
 )
 def test_invalid_files_are_refused(read_text, tmp_path, text, code, word):

@@ -21,7 +21,6 @@ from uplift.extras.papers.representations.composite import (
     fourier_coefficients,
     split_spikes,
     sun_composite,
-    waves,
 )
 from uplift.extras.papers.representations.filters import Filter, resampling_matrix
 from uplift.extras.papers.representations.models import (
@@ -169,17 +168,6 @@ def test_fourier_coefficients_equal_equation_4_7(count):
         for wave in (np.cos, np.sin):
             expected.append((table[:, 1:] @ wave(order * phase)) * 2 / 80)
     assert_allclose(actual, np.transpose(expected), atol=1e-12)
-
-
-@pytest.mark.parametrize("count", [3, 7])
-def test_product_of_fourier_series_is_not_aliased(count):
-    one = fourier_coefficients(count)
-    rng = np.random.default_rng(7)
-    first, second = rng.random((2, 4, count))
-    whole = (first @ waves(count)) * (second @ waves(count))
-    table = np.concatenate([np.ones((1, 400)), waves(count)[1:, :400]])
-    kept = (whole[:, :400] @ table.T) / (table**2).sum(axis=1)
-    assert_allclose(one.multiply(first, second), kept, atol=1e-12)
 
 
 @pytest.mark.parametrize("make", [sun_composite, enhanced_riemann])

@@ -15,7 +15,6 @@ from uplift.common.errors import OptionError, TextureError
 from uplift.common.progress import ignore_progress
 from uplift.extras.scene.advice import advise, colour_areas, uncertainty
 from uplift.extras.texture.scene_colours import Images, PixelSample, sample_colours
-from uplift.fit.kriging import Kernel, posterior
 
 LIGHTS = ("A", "FL11")
 
@@ -54,18 +53,6 @@ def test_no_measurement_raises_a_variance_and_each_swatch_has_the_largest_gain(
         assert np.diag(before.covariance)[swatch.colour] == pytest.approx(0, abs=1e-12)
         assert before.mean == pytest.approx(swatch.mean_after, rel=1e-12)
         assert swatch.area <= swatch.share <= 1 + 1e-12
-
-
-def test_posterior_is_that_of_the_joint_covariance(cube):
-    """A Schur complement of the covariance of known and other materials."""
-    kernel = Kernel(12.0, 0.3)
-    known = cube.data.entry_lab
-    lab = known[:3] + 2.0
-    both = np.concatenate([known, lab])
-    covariance = posterior(kernel, np.zeros((0, 3)), both) * (1 + kernel.noise)
-    joint = np.linalg.inv(covariance)[len(known) :, len(known) :]
-    expected = np.linalg.inv(joint) / (1 + kernel.noise)
-    assert_allclose(posterior(kernel, known, lab), expected, rtol=1e-9)
 
 
 def test_errors_are_those_of_the_cube_until_something_is_measured(cube):

@@ -71,16 +71,6 @@ def rows():
     return where(study_moments(read_atlases(), 8).rows(), atlas=ALL_ATLASES)
 
 
-@pytest.mark.parametrize("floats", [3, 9])
-def test_mirrored_techniques_have_the_least_error(rows, floats):
-    def least(name, mirrored):
-        same = where(rows, floats=floats, mirrored=mirrored)
-        return min(row[f"{name}_mean"] for row in same)
-
-    for name, factor in {"delta_e_76_D65": 1, "rms": 2.5 * (floats >= 9)}.items():
-        assert factor * least(name, True) < least(name, False)
-
-
 @by_name(TECHNIQUES[:2])
 def test_errors_agree_with_those_of_the_thesis(rows, technique):
     row = pick(rows, mirrored=True, warped=technique.warped, moments=8)

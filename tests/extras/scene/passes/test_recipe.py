@@ -37,65 +37,48 @@ def test_texts_have_the_matrices(decoder, tool, row):
 
 
 class Socket:
-    """A socket of a node: a value, or the output that is linked to it."""
+    """A socket of a node."""
 
-    def __init__(self, compute=None):
-        self.default_value = 0.0
-        self.source = None
-        self.compute = compute
-
-    def value(self):
-        if self.compute is not None:
-            return self.compute()
-        return self.default_value if self.source is None else self.source.value()
+    default_value = 0.0
 
 
-class Node:
-    """A node of the compositor, as far as the script uses it."""
-
-    def __init__(self, kind):
-        self.kind = kind
-        self.inputs = [Socket() for _ in range(4)]
-        if kind == "NodeGroupInput":
-            self.outputs = [Socket(lambda: NUMBERS[:3]), Socket(lambda: NUMBERS[3:])]
-        elif kind == "CompositorNodeSeparateColor":
-            self.outputs = [
-                Socket(lambda channel=channel: self.values()[0][channel])
-                for channel in range(3)
-            ]
-        elif kind == "CompositorNodeCombineColor":
-            self.outputs = [Socket(lambda: self.values()[:3])]
-        else:
-            self.outputs = [Socket(self.multiply_add)]
-
-    def values(self):
-        return [socket.value() for socket in self.inputs]
-
-    def multiply_add(self):
-        assert self.operation == "MULTIPLY_ADD"
-        first, second, third, _ = self.values()
-        return first * second + third
-
-
-@pytest.mark.parametrize("own_math", [True, False])
-def test_blender(decoder, monkeypatch, own_math):
+@pytest.mark.parametrize("math", ["CompositorNodeMath", "ShaderNodeMath"])
+def test_blender(decoder, monkeypatch, math):
     """The script makes nodes that compute the picture."""
-    nodes = {}
+    nodes = []
+    links = {}
+    tree = MagicMock()
+    tree.links.new = lambda source, target: links.update({target: source})
 
     def new_node(kind):
-        node = Node(kind)
-        nodes.setdefault(kind, []).append(node)
-        return node
+        inputs = [Socket(), Socket(), Socket()]
+        outputs = [Socket(), Socket(), Socket()]
+        nodes.append(SimpleNamespace(kind=kind, inputs=inputs, outputs=outputs))
+        return nodes[-1]
 
-    tree = MagicMock()
     tree.nodes.new = new_node
-    tree.links.new = lambda source, target: setattr(target, "source", source)
-    bpy = SimpleNamespace(data=MagicMock(), types=SimpleNamespace())
+
+    def value(socket):
+        """The number of an input, as the compositor computes it."""
+        if socket not in links:
+            return socket.default_value
+        source = links[socket]
+        [node] = (node for node in nodes if source in node.outputs)
+        place = node.outputs.index(source)
+        if node.kind == "NodeGroupInput":
+            return NUMBERS.reshape(2, 3)[place]
+        first, second, third = map(value, node.inputs)
+        if node.kind == "CompositorNodeSeparateColor":
+            return first[place]
+        if node.kind == "CompositorNodeCombineColor":
+            return first, second, third
+        assert (node.kind, node.operation) == (math, "MULTIPLY_ADD")
+        return first * second + third
+
+    types = SimpleNamespace(**{math: None})
+    bpy = SimpleNamespace(data=MagicMock(), types=types)
     bpy.data.node_groups.new.return_value = tree
-    if own_math:
-        bpy.types.CompositorNodeMath = Node
     monkeypatch.setitem(sys.modules, "bpy", bpy)
     exec(RECIPES["blender"](decoder), {})
-    (leave,) = nodes["NodeGroupOutput"]
-    assert_allclose(leave.values()[0], decoder.matrix @ NUMBERS, atol=1e-6)
-    assert ("CompositorNodeMath" if own_math else "ShaderNodeMath") in nodes
+    [leave] = (node for node in nodes if node.kind == "NodeGroupOutput")
+    assert_allclose(value(leave.inputs[0]), decoder.matrix @ NUMBERS, atol=1e-6)

@@ -164,7 +164,6 @@ def test_changed_and_missing_sources_are_refused(plan_file):
         (None, {"format": "uplift plan 2"}, "invalid-file", "format"),
         ("build", {"dims": 3}, "unknown-name", "build: unknown option 'dims'"),
         ("build", {"dim": "x"}, "option", "build: dim "),
-        ("build", {"lights": 3}, "option", "build: lights "),
         ("build", {"observer": "/etc/a.csv"}, "unknown-name", "build: unknown"),
         ("scene", {"textures": [3]}, "invalid-file", "scene.textures[0]"),
         (

@@ -1,6 +1,4 @@
-"""The search against all candidates of small spaces, with errors that are injected, and
-of a real scene.
-"""
+"""The search against all candidates of small spaces, with errors that are injected."""
 
 from dataclasses import replace
 from itertools import product
@@ -9,8 +7,6 @@ from typing import get_args
 import numpy as np
 import pytest
 
-from tests.extras.scene.plan.conftest import SMALL
-from uplift.extras.scene import plan
 from uplift.extras.scene.plan.candidates import Candidate, Cost, Pixel
 from uplift.extras.scene.plan.evaluation import ErrorSummary, GroupError
 from uplift.extras.scene.plan.files import Minimised
@@ -81,17 +77,3 @@ def test_the_front_has_what_nothing_dominates():
         dominated = (row <= front).all(axis=1) & (row < front).any(axis=1)
         assert not dominated.any()
     assert len(np.unique(front, axis=0)) == len(front)
-
-
-@pytest.mark.filterwarnings("ignore::uplift.UpliftWarning")
-def test_bounds_of_a_real_scene_exclude_no_cheaper_candidate(
-    kitchen, planned, monkeypatch
-):
-    scene = plan.read_scene_file(kitchen)
-    monkeypatch.setattr("uplift.extras.scene.plan.space.MARGIN", 0.0)
-    everything = plan.plan(scene, SMALL).measured
-    found, _ = planned
-    assert len(found.measured) <= len(everything) <= found.considered
-    for tolerance, minimise in product((2.5, 4.0, 6.0), MINIMISE):
-        expected = cheapest_cost(everything, tolerance, minimise, {})
-        assert cheapest_cost(found.measured, tolerance, minimise, {}) == expected
