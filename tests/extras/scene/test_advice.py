@@ -11,7 +11,7 @@ from tests.conftest import ROOT
 from tests.extras.texture.conftest import write_image
 from tests.helpers import raises
 from uplift.colorimetry.observer import light
-from uplift.common.errors import OptionError, TextureError
+from uplift.common.errors import TextureError
 from uplift.common.progress import ignore_progress
 from uplift.extras.scene.advice import advise, colour_areas, uncertainty
 from uplift.extras.texture.scene_colours import Images, PixelSample, sample_colours
@@ -94,9 +94,3 @@ def test_transparent_pixels_have_no_area(cube, tmp_path, suffix, share):
     clear = write_image(tmp_path / "clear.png", np.zeros((2, 2, 4), np.uint8))
     with raises(TextureError):
         colour_areas(Images((clear,)), sensor)
-
-
-@pytest.mark.parametrize("count", [0, 101])
-def test_count_has_limits(cube, count):
-    with raises(OptionError, "option"):
-        advise(scene(cube, drawn(0)), count)

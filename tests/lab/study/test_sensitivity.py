@@ -7,7 +7,6 @@ from uplift.colorimetry import observer
 from uplift.colorimetry.delta_e import delta_e_spectra
 from uplift.lab.study.sensitivity import (
     CONTINUOUS_MODES,
-    Change,
     perturb,
     perturb_answers,
 )
@@ -43,11 +42,3 @@ def test_jumps_are_found_and_only_those(width):
     jump = perturb_answers("", answer, lambda codes: codes / 255, lights)[0]["jump"]
     expected = float(delta_e_spectra(LIGHT, dark, bright))
     assert jump == pytest.approx(expected * (width < 1e-6), abs=1e-3 * expected)
-
-
-def test_moved_share_and_radius_by_hand():
-    delta_e = np.array([0.1, 0.6, 2, 0.5])
-    distance = np.array([[0.0, 1, 2, 3], [9, 5, 4, 9]])
-    row = Change("", np.zeros(4), delta_e, distance).row()
-    assert (row["moved"], row["rgb_radius"], row["lab_radius"]) == (0.5, 2, 5)
-    assert Change("", np.zeros(4), 0 * delta_e, distance).row()["rgb_radius"] == 0

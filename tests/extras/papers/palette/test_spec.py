@@ -52,7 +52,6 @@ delta-e = 4.5
 """
 
 
-APART = '[[apart]]\nmaterials = ["new", "new"]\n'
 HEAD = 'lights.day.illuminant = "D65"\nmaterials.new.design = true\n'
 
 
@@ -126,9 +125,7 @@ def test_a_black_body_of_2856_k_is_illuminant_a(sensor):
         ("lights = [", "invalid-file", ""),
         ("", "invalid-file", "lights"),
         (HEAD + "smothness = 1", "invalid-file", "smothness"),
-        (HEAD + "coefficients = 6.5", "invalid-file", "coefficients"),
         (HEAD + 'colours.ne.day = "#000000"', "unknown-name", "colours.ne"),
-        (HEAD + 'colours.new.dya = "#000000"', "unknown-name", "colours.new.dya"),
         (HEAD + 'colours.new.day = "red"', "colour", "colours.new.day"),
         (
             HEAD + 'colours.new.day = { free = "a", rgb = "#000000" }',
@@ -156,7 +153,6 @@ def test_a_black_body_of_2856_k_is_illuminant_a(sensor):
             "invalid-file",
             "apart[0].materials",
         ),
-        (HEAD + APART + 'light = "dya"\ndelta-e = 1', "unknown-name", "apart[0].light"),
     ],
 )
 def test_an_invalid_spec_is_refused_with_its_key(read, text, code, key):
