@@ -89,19 +89,19 @@ def check_picture(tab, mix, stops=0.0):
 
 def test_the_picture_agrees_with_full_spectra(model, sensor, small_cube):
     """Under smooth lights they differ by the small error of the factor model."""
-    colours = {"red": (0.5, 0.1, 0.1), "leaf": (0.1, 0.3, 0.05), "sky": (0.2, 0.4, 0.7)}
-    materials = [
-        SpectrumSpec(name, small_cube.reflectance(rgb, sensor.wavelengths))
-        for name, rgb in colours.items()
-    ]
-    lights = [SpectrumSpec(name, illuminant(sensor, name)) for name in ("D65", "A")]
-    palette = Palette(sensor, tuple(lights), tuple(materials), (), {})
+    colours = np.array([[0.5, 0.1, 0.1], [0.1, 0.3, 0.05], [0.2, 0.4, 0.7]])
+    spectra = small_cube.reflectance(colours, sensor.wavelengths)
+    materials = tuple(map(SpectrumSpec, ("red", "leaf", "sky"), spectra))
+    lights = tuple(
+        SpectrumSpec(name, illuminant(sensor, name)) for name in ("D65", "A")
+    )
+    palette = Palette(sensor, lights, materials, (), {})
     found = relighting("three", design(palette, model), cutaway(3, size=64))
     mix = np.array([0.6, 0.4])
     full = found.weights @ np.einsum("j,njk->nk", mix, found.colours)
     assert np.abs(found.rgb(mix) - full).max() < 0.02
-    assert found.materials == tuple(colours)
-    assert found.colours[0, 0] == pytest.approx(np.array(colours["red"]), abs=1e-3)
+    assert found.materials == ("red", "leaf", "sky")
+    assert found.colours[:, 0] == pytest.approx(colours, abs=1e-3)
     assert found.white[0] == pytest.approx([1, 1, 1], abs=1e-3)
 
 

@@ -96,20 +96,14 @@ def test_a_scene_under_the_light_of_its_space_needs_no_spectra(tmp_path):
     assert "needs no cube" in caught.value.problem
 
 
-def test_black_images_need_no_texture(tmp_path):
-    found = planned_for(tmp_path, np.zeros((60, 80, 3)))
-    assert found.within_tolerance
-    assert found.chosen.pixel.form == "index"
-
-
 def test_a_list_of_spectra_is_written(tmp_path):
-    paints = [[0.6, 0.1, 0.05], [0.05, 0.3, 0.6], [0.3, 0.6, 0.1]]
+    paints = [[0.6, 0.1, 0.05], [0.05, 0.3, 0.6], [0, 0, 0]]
     found = planned_for(tmp_path, [paints] * 500, ("D65", "A", "FL11"), tolerance=1.0)
     assert found.chosen.pixel.form == "index"
     values = to_json(found, tmp_path / "a.plan.json")
-    assert len(values["spectra"]) == 3
     spectra = np.array([each["reflectance"] for each in values["spectra"]])
     rgb = np.array([each["rgb"] for each in values["spectra"]])
+    assert len(rgb) == 3
     rendering = values["rendering"]
     xyz = spectra * np.array(rendering["powers"]["D65"]) @ np.array(rendering["to_xyz"])
     assert_allclose(xyz, rgb @ found.scene.sensor().rgb_to_xyz.T, atol=0.02)
