@@ -99,6 +99,7 @@ INVALID = [
     (choose, None, {}),
     (choose, None, {"count": 4, "target": 1.0}),
     (choose, None, {"count": 41}),
+    (choose, None, {"target": float("nan")}),
     (choose, None, {"count": 4, "method": "unform"}),
     (fit_weights, None, {"wavelengths": []}),
     (fit_weights, None, {"wavelengths": [500, 500]}),

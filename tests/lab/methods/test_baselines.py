@@ -13,7 +13,6 @@ from uplift.colorimetry import observer
 from uplift.lab.methods.burns2019 import reconstruct
 from uplift.lab.methods.colour_maps import (
     fit_map,
-    prepare,
     term_exponents,
 )
 from uplift.lab.methods.metamer_mean import metamer_mean
@@ -38,16 +37,6 @@ def test_maps_are_exact_for_three_basis_spectra_and_scale(degree, count):
     assert_allclose(exact, spectra @ FL11.xyz.T / FL11.white, atol=1e-9)
     to_light = fit_map(degree, D65, FL11, MEASURED)
     assert_allclose(to_light(3 * xyz), 3 * to_light(xyz))
-
-
-def test_maps_know_the_library_without_the_families_of_the_task():
-    prepared = prepare(TASK, degree=1)
-    to_light = fit_map(1, D65, FL11, TASK.library)
-    expected = to_light(SENSOR.xyz(TASK.rgb) / D65.white)
-    assert_allclose(prepared.colours(TASK.rgb, FL11), expected)
-    errors = prepared.errors(TASK, [D65, FL11])
-    assert errors.delta_e[:, 1].mean() > 100 * errors.delta_e[:, 0].mean()
-    assert errors.rms is None
 
 
 def test_burns_spectra_have_their_colours_and_the_least_slope(monkeypatch):

@@ -2,6 +2,8 @@
 difficult as their names.
 """
 
+import numpy as np
+
 from tests.helpers import raises
 from uplift.colorimetry import observer
 from uplift.colorimetry.object_colours import solid
@@ -13,6 +15,7 @@ from uplift.lab.study.stability import (
     RunConfig,
     evaluate,
     study_stability,
+    synthetic_atlases,
 )
 from uplift.lattice.lattice import Lattice, axis_nodes
 
@@ -52,3 +55,13 @@ def test_sample_covers_every_value_of_every_axis():
         assert drawn == {value for value in values if name != "dim" or value <= 17}
     models = {(config.model, config.coefficients) for config in sample}
     assert len(models) == len(design.variants)
+
+
+def test_atlases_are_crowded_spiky_and_noisy(sensor):
+    crowded, spiky, noisy = (
+        np.array([entry.values for entry in atlas])
+        for atlas in synthetic_atlases().values()
+    )
+    assert np.ptp(sensor.rgb(crowded), axis=0).max() < 0.1
+    assert (np.abs(np.diff(spiky, axis=1)).max(axis=1) > 0.2).all()
+    assert noisy.min() < 0 < 1 < noisy.max()

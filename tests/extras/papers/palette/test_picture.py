@@ -8,7 +8,7 @@ import pytest
 
 from tests.extras.texture.conftest import write_exr
 from tests.helpers import raises
-from uplift.common.errors import OptionError, TextureError
+from uplift.common.errors import OptionError, TextureError, UnknownNameError
 from uplift.extras.papers.palette import picture
 from uplift.extras.papers.palette.picture import cutaway, read_weights
 
@@ -52,10 +52,12 @@ def test_channels_named_after_materials_are_their_weights(tmp_path):
 @pytest.mark.parametrize(
     ("content", "labels", "error"),
     [
+        ([[SKIN]], {"skim": "#ffffff"}, UnknownNameError),
         ([[SKIN]], {"skin": "orange"}, OptionError),
         ([[SKIN]], {"skin": "#ffffff", "bone": "#FFFFFF"}, OptionError),
         ([[SKIN, (1, 2, 3)]], LABELS, TextureError),
         ([[SKIN] * 11], LABELS, TextureError),
+        ({"R": [[1.0]]}, None, TextureError),
         ({"skin": [[np.nan]]}, None, TextureError),
         ({"skin": [[-0.1]]}, None, TextureError),
     ],

@@ -151,10 +151,5 @@ def test_sliders_scale_their_light_exposure_scales_all_and_reset_restores(tab):
     tab.evaluate("document.querySelector('[data-light=\"1\"]').click()")
     mix = np.array([0, 1, 0])
     check_picture(tab, mix, 1.5)
-    linear = 2**1.5 * VIEW.rgb(mix)
-    clipped = ((linear < -1 / 510) | (linear > 1 + 1 / 510)).any(axis=-1).mean()
-    assert clipped > 0.01
-    text = tab.evaluate("document.getElementById('clipped').textContent")
-    assert float(text.split()[1]) == pytest.approx(100 * clipped, abs=0.1)
     tab.evaluate("document.getElementById('reset').click()")
     check_picture(tab, np.eye(3)[VIEW.start_light])

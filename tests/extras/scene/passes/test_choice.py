@@ -8,6 +8,8 @@ from numpy.testing import assert_allclose
 
 from tests.extras.scene.passes.conftest import LIGHTS, SIX
 from tests.helpers import raises
+from uplift.atlas.atlas import Atlas
+from uplift.atlas.sources import read_atlas
 from uplift.colorimetry import observer
 from uplift.colorimetry.delta_e import delta_e_2000, lab
 from uplift.common.errors import OptionError
@@ -15,9 +17,10 @@ from uplift.extras.scene.passes.bands import PRESETS, Bands
 from uplift.extras.scene.passes.choice import choose, fit_bands
 from uplift.extras.scene.passes.decoding import Grams
 from uplift.extras.scene.passes.light_paths import draw_paths
-from uplift.extras.scene.passes.materials import Materials
+from uplift.extras.scene.passes.materials import Materials, scene_materials
 from uplift.extras.scene.passes.passes import scaled_power
 from uplift.extras.scene.passes.search import Search
+from uplift.lookup.cube import load
 
 AIMS = {2: 0.6, 3: 0.25, 4: 0.12}
 """Mean ΔE00 by passes, with one decoding for six lights."""
@@ -134,3 +137,9 @@ def test_choice_is_checked(library, lights, options):
 def test_halves_share_no_material(library):
     training = {row.tobytes() for row in library.training}
     assert not training & {row.tobytes() for row in library.held_out}
+
+
+def test_few_materials_are_refused():
+    few = Atlas(read_atlas("tcs").entries[:3])
+    with raises(OptionError):
+        scene_materials({"small": few}, None, load())

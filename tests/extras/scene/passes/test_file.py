@@ -37,6 +37,7 @@ def test_round_trip(two_passes, tmp_path):
         (r"^centres = \[448.0, ", "centres = ["),
         (r"^centres = \[448.0, 498.0", "centres = [498.0, 448.0"),
         (r"^width = .*$", "width = nan"),
+        (r"^width = .*$", "width = 61"),
         (r"^width = .*$", 'width = "wide"'),
         (r"^numbers = \[", "numbers = [-1.0, "),
         (r"^to-xyz = \[\n  \[", "to-xyz = [\n  [1.0, "),
