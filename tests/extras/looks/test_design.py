@@ -59,11 +59,11 @@ def test_looks_of_real_materials_are_met_in_their_entry_fit(sensor, materials, n
     lights = [observer.light(name) for name in names]
     model = Moments(17)
     goals = []
-    designs = []
+    fits = []
     for spectrum, expected in zip(*materials, strict=True):
         goals.append(goal_of(sensor, lights, spectrum))
-        designs.append(design_reflectance(sensor, goals[-1], expected))
-    designs = np.array(designs)
+        fits.append(design_reflectance(sensor, goals[-1], expected))
+    designs = np.array(fits)
     assert designs.min() >= 0
     assert designs.max() <= 1
     fitted = fit_designs(Problem(sensor, model), goals, designs)
