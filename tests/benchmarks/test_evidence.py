@@ -1,4 +1,4 @@
-"""Matrices of cameras, and printed values of a thesis, as programs of pages have them."""
+"""Matrices of cameras, and printed values of a thesis, as pages have them."""
 
 import numpy as np
 from numpy.testing import assert_allclose
