@@ -12,7 +12,6 @@ from tests.conftest import ATLASES
 from tests.helpers import raises
 from uplift.atlas.resampling import resample
 from uplift.colorimetry import observer
-from uplift.colorimetry.delta_e import delta_e_spectra
 from uplift.colorimetry.sensor import in_unit_cube
 from uplift.common.errors import OptionError, TextureError
 from uplift.extras import texture
@@ -22,7 +21,6 @@ from uplift.extras.photographs.fit import estimate_noise, shift
 from uplift.extras.photographs.photograph import Noise, photograph
 from uplift.extras.texture.encodings import spectral_channels
 from uplift.extras.texture.sequence import Job, TextureSettings, is_complete, run
-from uplift.lookup.node_table import prepare_products
 
 from .conftest import (
     channels,
@@ -93,12 +91,6 @@ def tungsten(scene):
     return photograph_of(scene, observer.sensor("sRGB", "A"))
 
 
-def mean_error(name, spectra, scene):
-    """Mean ΔE00 under a light."""
-    pair = (spectra.reshape(-1, 81), scene.reshape(-1, 81))
-    return delta_e_spectra(observer.light(name), *pair).mean()
-
-
 def under(light, **settings):
     picture = {
         name: settings.pop(name) for name in ("camera", "exposure") & settings.keys()
@@ -112,30 +104,12 @@ def spectra_of(conversion):
     return read_channels(conversion.target, names)
 
 
-def test_a_relit_picture_gives_the_spectra_back(plain_cube, day, convert):
-    """Of the cube's own answers under A."""
+def test_exposure_balance_and_shift_are_estimated(scene, convert):
     lit = observer.sensor("sRGB", "A")
-    relit = prepare_products(plain_cube.data, plain_cube.wavelengths, lit.matrix, 1)
-    rgb = read_channels(day, "RGB")
-    conversion = convert(relit(rgb))
-    assert "exposure × 1 " in conversion.facts[0]
-    assert_allclose(spectra_of(conversion), plain_cube.reflectance(rgb), atol=2e-3)
-    assert not channels(conversion.target)["contradiction"].any()
-
-
-def test_textures_come_nearer_to_the_materials(scene, plain_cube, convert):
-    """With noise, at another exposure, which is not stated."""
-    lit = observer.sensor("sRGB", "A")
-    conversion = convert(photograph_of(scene, lit, exposure=1.3, noise=0.005))
-    factor = float(conversion.facts[0].split()[3])
-    assert factor == pytest.approx(1.3, rel=0.01)
-    assert "shift 0.0" in conversion.facts[0]
-    ratio = np.array(conversion.facts[1].split()[7:10], dtype=float)
-    assert_allclose(ratio, 1, atol=0.05)
-    two = spectra_of(conversion)
-    one = plain_cube.reflectance(np.clip(scene @ plain_cube.data.sensor.matrix.T, 0, 1))
-    for name in ("A", "FL11", "HP1"):
-        assert mean_error(name, two, scene) < mean_error(name, one, scene), name
+    facts = convert(photograph_of(scene, lit, exposure=1.3, noise=0.005)).facts
+    assert float(facts[0].split()[3]) == pytest.approx(1.3, rel=0.01)
+    assert "shift 0.0" in facts[0]
+    assert_allclose(np.array(facts[1].split()[7:10], dtype=float), 1, atol=0.05)
 
 
 def test_texture_and_python_agree(plain_cube, day, convert, tungsten):
@@ -179,7 +153,7 @@ def test_raw_values_of_a_camera_are_in_no_space(scene, plain_cube, convert, tmp_
         answers.append(spectra_of(convert(path, further)))
     assert_array_equal(*answers)
     plain = plain_cube.reflectance(np.clip(scene @ sensor.matrix.T, 0, 1))
-    assert mean_error("HP1", answers[0], scene) < mean_error("HP1", plain, scene)
+    assert np.abs(answers[0] - scene).mean() < np.abs(plain - scene).mean()
 
 
 def test_masks_mix_cubes(tungsten, plain_cube, small_cube, convert, tmp_path):
