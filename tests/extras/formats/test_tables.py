@@ -184,18 +184,6 @@ def test_labels_are_wavelengths_in_rows_and_columns(read, label):
 
 
 @pytest.mark.parametrize(
-    ("head", "pattern", "numbers"),
-    [
-        ("X Units: Wavelength (micrometers)", "{:.4f},{:g}", NM / 1000),
-        ("Wavelength range: 0.35-2.5 µm\nnm,a", "{:g},{:g}", NM),
-        ("Wavelength accuracy: 0.1 nm\nwavelength,a", "{:.4f},{:g}", NM / 1000),
-    ],
-)
-def test_units_in_remarks_are_those_of_wavelengths(read, head, pattern, numbers):
-    check_values(read(f"{head}\n" + lines(pattern, nm=numbers)))
-
-
-@pytest.mark.parametrize(
     "text", [lines(nm=NM * 10), lines(nm=1e7 / NM), lines(nm=NM + 600)]
 )
 def test_units_that_nothing_states_are_refused_by_their_numbers(read, text):

@@ -143,20 +143,19 @@ EVALUATE = """
 import json, sys
 import drjit, mitsuba as mi, numpy as np
 from uplift.extras.mitsuba import register
-variant, *arguments = sys.argv[1:]
-mi.set_variant(variant)
-register()
-properties, positions = map(json.loads, arguments)
+properties, positions = map(json.loads, sys.argv[1:])
 found = []
-for each in properties:
-    texture = mi.load_dict({"type": "uplift", **each})
-    size = len(positions) if variant.startswith("llvm") else 1
-    for first in range(0, len(positions), size):
-        si = drjit.zeros(mi.SurfaceInteraction3f, size)
-        rows = np.float32(positions[first:first + size]).T
-        si.uv = mi.Point2f(*(rows if size > 1 else rows[:, 0].tolist()))
-        si.wavelengths = mi.Spectrum(400, 500, 600, 700)
-        found += np.array(texture.eval(si)).reshape(4, -1).T.tolist()
+for variant, size in (("scalar_spectral", 1), ("llvm_ad_spectral", len(positions))):
+    mi.set_variant(variant)
+    register()
+    for each in properties:
+        texture = mi.load_dict({"type": "uplift", **each})
+        for first in range(0, len(positions), size):
+            si = drjit.zeros(mi.SurfaceInteraction3f, size)
+            rows = np.float32(positions[first:first + size]).T
+            si.uv = mi.Point2f(*(rows if size > 1 else rows[:, 0].tolist()))
+            si.wavelengths = mi.Spectrum(400, 500, 600, 700)
+            found += np.array(texture.eval(si)).reshape(4, -1).T.tolist()
 print(json.dumps(found))
 """
 
@@ -175,11 +174,8 @@ def test_a_wavefront_agrees_with_single_rays(mi, small_cube, cube_path, tmp_path
         for source, filter_type, wrap in itertools.product(sources, FILTERS, WRAPS)
     ]
     arguments = [json.dumps(each) for each in (properties, POSITIONS)]
-    expected, found = (
-        json.loads(run_python(EVALUATE, variant, *arguments))
-        for variant in ("scalar_spectral", "llvm_ad_spectral")
-    )
-    assert_allclose(found, expected, rtol=0, atol=1e-5)
+    values = np.array(json.loads(run_python(EVALUATE, *arguments)))
+    assert_allclose(*np.split(values, 2), rtol=0, atol=1e-5)
 
 
 # Two of them lie beyond the samples, and none halfway between samples that differ much.

@@ -8,7 +8,6 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from uplift.extras.pages.figure import to_svg
-from uplift.extras.pages.marks import line
 from uplift.extras.pages.panels import Axis, Dot, Panel, draw
 from uplift.extras.pages.pareto import CLEAR_RATIO, front_panel, pareto_front
 
@@ -44,15 +43,6 @@ def test_markers_and_labels_have_their_keys_in_svg():
     svg = to_svg(draw([Panel(dots=[Dot(1, 2, "here", key="0-7"), Dot(3, 4)])]))
     assert svg.count('id="marker-0-7"') == svg.count('id="label-0-7"') == 1
     assert svg.count("marker-") == 1
-
-
-def test_a_legend_has_each_label_once_and_fits():
-    names = [f"a method with a long name {number}" for number in range(7)]
-    marks = [line([1, 2], [1, 3], name) for name in names]
-    figure = draw([Panel(marks)] * 4, 2, legend="below")
-    (legend,) = figure.legends
-    assert [text.get_text() for text in legend.get_texts()] == names
-    assert figure.bbox.count_contains(legend.get_window_extent().corners()) == 4
 
 
 costs = st.sampled_from([1.0, 10.0, 11.0, 100.0, 1e5])

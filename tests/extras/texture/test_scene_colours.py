@@ -11,8 +11,7 @@ from PIL import Image
 
 from tests.conftest import ATLASES, MACBETH
 from tests.extras.texture.conftest import PHOTO, WAVELENGTHS, planes, write_exr
-from tests.helpers import near_black, quiet_build, raises, with_absent_points
-from uplift.common.errors import ColourError
+from tests.helpers import quiet_build
 from uplift.cube.file import digest
 from uplift.extras.report.rebuild import rebuild
 from uplift.extras.report.regression import compare_rebuilt
@@ -66,16 +65,6 @@ def test_answers_to_the_scene_are_those_of_the_complete_cube(
     assert scene_cube.covers(photo_colours).all()
     answers = (answer(cube, photo_colours[::10]) for cube in (scene_cube, macbeth_cube))
     assert_allclose(*answers, rtol=0, atol=1e-6)
-
-
-def test_an_error_quotes_the_first_colour_that_is_not_covered(small_cube):
-    cube = Cube(with_absent_points(small_cube.data, near_black(small_cube.data)))
-    rgb = np.random.default_rng(3).random((500, 3))
-    first, *more = rgb[~cube.covers(rgb)]
-    for answer in ANSWERS:
-        with raises(ColourError, "colour-not-in-scene") as caught:
-            answer(cube, np.array([[0.001, 0.002, 0.003], first, *more]))
-        assert ", ".join(f"{value:.6g}" for value in first) in caught.value.problem
 
 
 @pytest.mark.parametrize("encoding", ["auto", "linear"])

@@ -45,16 +45,21 @@ def test_random_images_have_the_colours_that_they_state():
     assert list(chain(*map(wrong, SEEDS))) == []
 
 
-@pytest.mark.parametrize("mode", ["P", "1", "L"])
-def test_palettes_and_bits_of_png_are_linear_by_gamma(mode, to_texture, tmp_path):
+@pytest.mark.parametrize(
+    ("mode", "options"),
+    [("P", {}), ("1", {}), ("L", {}), ("RGB", {"transparency": (128, 120, 110)})],
+)
+def test_pixels_of_png_are_linear_by_gamma(mode, options, to_texture, tmp_path):
     path = tmp_path / "a.png"
     image = Image.fromarray(np.repeat(CODES, 2, axis=0)).convert(mode)
-    image.save(path)
+    image.save(path, **options)
     data = path.read_bytes()
     path.write_bytes(data[:33] + files.gama(1) + data[33:])
     result = to_texture(path)
     expected = np.asarray(image.convert("RGB")) / 255
     assert_allclose(rgb_of(result), expected, rtol=0, atol=1e-6)
+    if options:
+        assert_array_equal(channels(result.target)["A"], [[0, 1]] * 2)
 
 
 def png(*chunks):
@@ -71,14 +76,6 @@ def by_pillow(mode, kind, profile):
     pixels = np.full((2, 3, len(mode)), 100, np.uint8)
     Image.fromarray(pixels, mode).save(buffer, kind, icc_profile=profile)
     return buffer.getvalue()
-
-
-def test_a_transparent_colour_of_png_does_not_change_the_gamma(to_texture, tmp_path):
-    transparent = files.png_chunk(b"tRNS", CODES[0, 0].astype(">u2").tobytes())
-    (tmp_path / "a.png").write_bytes(png(files.gama(1), transparent))
-    result = to_texture(tmp_path / "a.png")
-    assert_allclose(rgb_of(result)[0], SHARE, rtol=0, atol=1e-6)
-    assert_array_equal(channels(result.target)["A"][0], [0, 1])
 
 
 DAMAGED = files.png_chunk(b"iCCP", b"name\0\0x")
