@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from tests.atlas.vendor_files import LAYOUTS, archive
 from tests.helpers import raises
 from uplift.atlas.sources import read_atlas
 from uplift.common.errors import AtlasError, UpliftWarning
@@ -41,11 +40,6 @@ def columns(label, cells):
 
 def rows(label, cells):
     return f"# {label}\nname;{';'.join(map(str, NM))}\na;{';'.join(cells)}"
-
-
-def spreadsheet(label, cells):
-    sheet = [["nm", label], *map(list, zip(map(int, NM), cells, strict=True))]
-    return archive(LAYOUTS.get_template("xlsx.xlsx").render(sheet=sheet))
 
 
 def cgats(label, cells):
@@ -102,7 +96,6 @@ MARKS = ("", "NaN", "-9999")
 FORMATS = {
     "columns": (columns, ".,", MARKS, LABELS),
     "rows": (rows, ".,", MARKS, LABELS),
-    "spreadsheet": (spreadsheet, ".,", MARKS, LABELS),
     "cgats": (cgats, ".,", ("-9999",), LABELS),
     "jcamp": (jcamp, ".,", (), LABELS),
     "tm27": (tm27, ".", ("-9999",), LABELS),

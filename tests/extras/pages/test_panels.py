@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from uplift.extras.pages.figure import to_svg
 from uplift.extras.pages.panels import Axis, Dot, Panel, draw
-from uplift.extras.pages.pareto import CLEAR_RATIO, front_panel, pareto_front
+from uplift.extras.pages.pareto import CLEAR_RATIO, pareto_front
 
 
 def boxes_of(axes):
@@ -30,13 +30,6 @@ def test_labels_cover_no_label_and_no_dot_and_stay_inside(log):
     for box in boxes:
         assert not box.count_contains(axes.transData.transform(places))
         assert axes.get_window_extent().count_contains(box.corners()) == 4
-
-
-def test_bold_labels_come_first_and_a_label_without_room_is_left_out():
-    crowd = [Dot(1, 1, "crowded " * 3) for _ in range(40)]
-    (axes,) = draw([Panel(dots=[*crowd, Dot(1, 1, "chosen", bold=True)])]).axes
-    assert "chosen" in [text.get_text() for text in axes.texts]
-    assert len(axes.texts) < len(crowd)
 
 
 def test_markers_and_labels_have_their_keys_in_svg():
@@ -60,13 +53,3 @@ def test_front_is_clearly_more_accurate_than_all_cheaper_points(points):
         assert any(
             cheap <= cost and CLEAR_RATIO * small <= error for cheap, small in front
         )
-
-
-def test_the_front_is_a_staircase_through_points_with_texts():
-    points = [(1, 3.0), (2, 3.0 * CLEAR_RATIO), (3, 2.0), (4, 2.5), (5, 1.0)]
-    dots = [Dot(x, y, f"{x}") for x, y in points]
-    panel = front_panel("title", Axis("cost", log=True), dots[:1], dots[1:])
-    assert {dot.text for dot in panel.dots if dot.bold} == {"1", "3", "5"}
-    (axes,) = draw([panel]).axes
-    front = axes.lines[-1].get_xydata()
-    assert front[:-1].tolist() == [[1, 3], [3, 3], [3, 2], [5, 2], [5, 1]]

@@ -5,11 +5,10 @@ from itertools import product
 import numpy as np
 import OpenEXR
 import pytest
-from matplotlib.image import imread
 from numpy.testing import assert_allclose
 
 from tests.cube.hand_made import hand_made
-from uplift.extras.colour.srgb import decode, encode
+from uplift.extras.colour.srgb import encode
 from uplift.extras.pages.sheet import STATUS, draw_sheet, write_sheet
 
 CODES = np.array([list(bytes.fromhex(code[1:])) for code in STATUS]) / 255
@@ -44,13 +43,10 @@ def test_every_node_is_at_its_position():
             assert rounds[place] == points.round[point]
 
 
-def test_files_have_equal_pixels(tmp_path):
-    data = hand_made()
-    write_sheet(data, tmp_path / "sheet.exr")
-    write_sheet(data, tmp_path / "sheet.png")
-    file = OpenEXR.File(str(tmp_path / "sheet.exr"))
-    image = file.channels()["RGB"].pixels
-    assert len(file.parts) == 1
-    assert file.header()["uplift.dim"] == 4
-    assert image.dtype == np.float32
-    assert_allclose(image, decode(imread(tmp_path / "sheet.png")[..., :3]), atol=1e-6)
+def test_an_exr_sheet_has_one_part(tmp_path):
+    write_sheet(hand_made(), tmp_path / "sheet.exr")
+    (part,) = OpenEXR.File(str(tmp_path / "sheet.exr")).parts
+    assert part.header["uplift.dim"] == 4
+    pixels = part.channels["RGB"].pixels
+    assert pixels.dtype == np.float32
+    assert pixels.max() == 1

@@ -51,9 +51,6 @@ def tab(page):
 VISIBLE = """[...document.querySelector(".view").querySelectorAll("img")]
   .filter(image => getComputedStyle(image).display !== "none")
   .map(image => [image.dataset.light, image.dataset.shows])"""
-BALANCED = (
-    '[balance.checked, document.querySelector("img.first").dataset.balanced === "true"]'
-)
 SPLIT = 'getComputedStyle(document.querySelector(".view")).getPropertyValue("--split")'
 CHOOSE = """((light, left, right, asMap) => {
   const form = document.querySelector(".choices");
@@ -80,18 +77,6 @@ def test_the_page_opens_where_the_difference_is_largest_and_choices_change_the_l
         choose(tab, *choices)
         assert sorted(tab.evaluate(VISIBLE)) == layers
     assert tab.errors == []
-
-
-def test_each_light_keeps_its_white_balance_as_the_switch_was_left(tab):
-    choose(tab, 2, 0, 2, False)
-    assert tab.evaluate(BALANCED) == [False, False]  # a sodium lamp does not look white
-    tab.evaluate("balance.focus()")
-    tab.key(" ")
-    assert tab.evaluate(BALANCED) == [True, True]
-    choose(tab, 1, 0, 2, False)
-    tab.evaluate("balance.click()")
-    choose(tab, 2, 0, 2, False)
-    assert tab.evaluate(BALANCED) == [True, True]
 
 
 def test_the_line_moves_by_key(tab):

@@ -4,7 +4,6 @@ import contextlib
 import os
 import sys
 from dataclasses import replace
-from functools import partial
 
 import numpy as np
 import pytest
@@ -62,24 +61,9 @@ def test_processes_and_a_dask_cluster(workers, jobs, small_cube, colours):
         assert_allclose(found, expected, rtol=0, atol=1e-6)
 
 
-@pytest.mark.filterwarnings("ignore")
-@pytest.mark.parametrize(
-    "options",
-    [
-        {"processes": 0},
-        {"scheduler": "tcp://127.0.0.1:1"},
-        {"scheduler": "nonsense://"},
-    ],
-)
-def test_impossible_workers_raise(options, monkeypatch):
-    distributed = pytest.importorskip("distributed")
-    client = partial(distributed.Client, timeout="0.2s")
-    monkeypatch.setattr(distributed, "Client", lambda address, timeout: client(address))
+def test_impossible_workers_raise(monkeypatch):
     with raises(OptionError, "option"):
-        list(texture.convert_all([], **options))
-
-
-def test_missing_dask_raises(monkeypatch):
+        list(texture.convert_all([], processes=0))
     monkeypatch.setitem(sys.modules, "distributed", None)
     with raises(OptionError, "extra-not-installed"):
         list(texture.convert_all([], scheduler="tcp://here:1"))

@@ -212,15 +212,14 @@ def test_shifts_are_measured_below_a_pixel():
     assert shift(np.ones((64, 64)), moved) is None
 
 
-@pytest.mark.parametrize(("share", "floor"), [(0.01, 0.0), (0.0, 0.003), (0.01, 0.002)])
-def test_noise_is_estimated_from_flat_areas(share, floor):
+def test_noise_is_estimated_from_flat_areas():
     levels = np.repeat(np.linspace(0.02, 0.8, 24), 16)
     band = np.tile(levels[:, None], (24, 1, 3))
-    deviation = np.hypot(share * band, floor)
+    deviation = np.hypot(0.01 * band, 0.002)
     band = band + RANDOM.standard_normal(band.shape) * deviation
     noise = estimate_noise([band] * 4, 0)
     for level in (0.05, 0.7):
-        expected = np.hypot(share * level, floor)
+        expected = np.hypot(0.01 * level, 0.002)
         assert np.sqrt(noise.variance(level)) == pytest.approx(expected, rel=0.35)
     assert estimate_noise([np.full((16, 16, 3), 0.5)], 255).share == 1 / 255
     assert estimate_noise([], 0) == Noise()
