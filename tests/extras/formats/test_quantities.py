@@ -96,15 +96,13 @@ def test_remarks_about_the_instrument_state_no_quantity():
     [
         ("K S", "aa"), ("S k", "  "), ("K_ochre S_ochre K_red S_red", "aaaa"),
         ("ochre_k ochre_s umber", "aa "), ("R K S", " aa"), ("C M Y K", "    "),
-        ("K", " "), ("A1 K1 S1", "   "), ("R_K R_S", "  "), ("R T", " s"),
-        ("D", "b"), ("D red", "  "), ("n", "r"), ("n k", "rr"), ("N K", "  "),
-        ("X Y Z", "sss"), ("x̄ ȳ z̄", "sss"), ("x y", "  "), ("X Y Z W", "    "),
-        ("A D65", "pp"), ("A B C", "   "), ("D50 white", "  "), ("D50 D51", "  "),
-        ("FL2 LED-B3", "pp"), ("W", "p"), ("W R G B", "    "),
+        ("A1 K1 S1", "   "), ("R_K R_S", "  "), ("R T", " s"), ("D", "b"),
+        ("D red", "  "), ("n k", "rr"), ("N K", "  "), ("X Y Z", "sss"),
+        ("x y", "  "), ("X Y Z W", "    "), ("A D65", "pp"), ("A B C", "   "),
+        ("D50 D51", "  "), ("FL2 LED-B3", "pp"), ("W", "p"), ("W R G B", "    "),
         ("mean SD", " d"), ("ochre ochre_std umber", " d "), ("ochre SD_ochre", " d"),
-        ("std batch", "  "), ("STD_red STD_blue", "  "), ("std", " "), ("stdev", "d"),
-        ("ochre ±", " d"), ("ochre1 std1", "  "), ("R1 std1", " d"),
-        ("ochre_K/S umber", "k "), ("Absorbance OD", "bb"),
+        ("STD_red STD_blue", "  "), ("std", " "), ("ochre1 std1", "  "),
+        ("R1 std1", " d"), ("ochre_K/S umber", "k "), ("Absorbance OD", "bb"),
     ],
 )  # fmt: skip
 def test_names_state_a_quantity_as_a_set(names, expected):

@@ -236,6 +236,7 @@ WAVE_NUMBERS = [f"{1e7 / at:.6f}" for at in NM]
         "a,,b,\nnm,R,nm,R\n" + lines("{0:g},{1:g},{0:g},{1:g}"),
         "of 2024,1\n" + lines("{:g},{:g},").replace("\n", "") + "\nn,9\n",
         lines("{:g} {:g}, ").replace("\n", ""),
+        "\n".join(map(" ".join, np.reshape(lines("{:g} {:g}").split(), (-1, 6)))),
         "Paint,wave,R\n" + lines("NA,{:g},{:g}") + lines("1,{:g},{:g}"),
         HEADER.replace("name", "Sample No")
         + "".join(map(row, map(str, range(101, 801, 100)))),

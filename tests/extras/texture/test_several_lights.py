@@ -223,6 +223,7 @@ def test_noise_is_estimated_from_flat_areas():
         assert np.sqrt(noise.variance(level)) == pytest.approx(expected, rel=0.35)
     assert estimate_noise([np.full((16, 16, 3), 0.5)], 255).share == 1 / 255
     assert estimate_noise([], 0) == Noise()
+    assert estimate_noise([band[:8, :8]], 0).variance(0.5) >= 0  # a block, many levels
 
 
 def test_sequences_resume_and_differ_by_their_photographs(
