@@ -135,7 +135,7 @@ def test_parts_windows_and_other_channels_are_kept(
     rgb = rng.random((20, 33, 3)).astype(np.float16)
     depth = rng.normal(0, 1e6, (20, 33)).astype(np.float32)
     depth[0, :3] = (np.nan, np.inf, -np.inf)
-    others = {
+    others: dict[str, np.ndarray] = {
         "mask": rgb[..., 0].copy(),
         "Z": depth,
         "id": rng.integers(0, 1 << 24, (20, 33), dtype=np.uint32, endpoint=True),

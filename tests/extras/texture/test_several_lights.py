@@ -40,16 +40,13 @@ SPECTRUM = texture.Spectrum()
 
 @pytest.fixture(scope="module")
 def scene(plain_cube):
-    """Reflectances (SIZE, SIZE, 81) of patches of measured materials, shaded."""
+    """Reflectances (SIZE, SIZE, 81) of patches of measured materials."""
     sensor = plain_cube.data.sensor
     atlas = uplift.read_atlas(ATLASES / "pmc.txt")
     spectra = resample(atlas, sensor.wavelengths).values
     spectra = spectra[in_unit_cube(sensor.rgb(spectra))]
-    count = SIZE // PATCH
-    patches = spectra[RANDOM.integers(len(spectra), size=(count, count))]
-    shade = 0.6 + 0.4 * RANDOM.random((count * 2, count * 2, 1))
-    large = np.kron(patches, np.ones((PATCH, PATCH, 1)))
-    return large * np.kron(shade, np.ones((PATCH // 2, PATCH // 2, 1)))
+    rows = RANDOM.integers(len(spectra), size=(SIZE // PATCH, SIZE // PATCH))
+    return np.kron(spectra[rows], np.ones((PATCH, PATCH, 1)))
 
 
 def photograph_of(scene, sensor, *, exposure=1.0, noise=0.0):
