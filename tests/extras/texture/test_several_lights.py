@@ -32,7 +32,7 @@ from .conftest import (
 )
 from .image_bytes import BT2020
 
-SIZE = 96
+SIZE = 64
 PATCH = 8
 RANDOM = np.random.default_rng(11)
 SPECTRUM = texture.Spectrum()
@@ -236,7 +236,7 @@ def test_sequences_resume_and_differ_by_their_photographs(
     assert not is_complete(replace(job, resume=True, force=True))
 
 
-CORNERS = (8.0, 8.0, 90.0, 12.0, 86.0, 70.0, 5.0, 66.0)
+CORNERS = (6.0, 5.0, 60.0, 8.0, 57.0, 47.0, 4.0, 44.0)
 TWICE = texture.FurtherPictures((texture.FurtherPicture("A"),) * 2)
 FAR = (0.0, 0.0, 900.0, 0.0, 900.0, 900.0, 0.0, 900.0)
 ON_A_LINE = (0.0, 0.0, 1.0, 1.0, 2.0, 2.0, 3.0, 3.0)
