@@ -83,7 +83,7 @@ def mutate(content: bytes, random: Random, seeds: Seeds) -> bytes:
     words = _words(seeds)
     for _ in range(int(random.integers(1, 9))):
         first, other = map(int, random.integers(len(content) + 1, size=2))
-        length = int(2 ** random.uniform(0, 10))
+        length = int(2 ** random.uniform(0, 8))
         number = NUMBER.search(content, first)
         word = WORD.search(content, first)
         spans = [
