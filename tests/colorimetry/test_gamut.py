@@ -42,17 +42,9 @@ def outside() -> Array:
     saturated, and combinations.
     """
     rng = np.random.default_rng(0)
-    near = np.clip(rng.normal(0.5, 0.5, (3000, 3)), 0, 1) + rng.normal(
-        0, 1e-3, (3000, 3)
-    )
-    found = [
-        near,
-        rng.normal(0.5, 1, (4000, 3)),
-        20 * rng.random((1000, 3)),
-        -rng.random((100, 3)),
-    ]
-    grey = np.linspace(-1, 3, 41)[:, None].repeat(3, axis=1)
-    rgb = np.concatenate([*found, grey, 3 * np.eye(3), -np.eye(3), 2 - 2 * np.eye(3)])
+    far = np.concatenate([rng.normal(0.5, 1, (4000, 3)), 20 * rng.random((1000, 3))])
+    near = np.clip(far[:3000], 0, 1) + rng.normal(0, 1e-3, (3000, 3))
+    rgb = np.concatenate([far, near, 3 * np.eye(3), -np.eye(3), 2 - 2 * np.eye(3)])
     return rgb[((rgb < 0) | (rgb > 1)).any(axis=1)]
 
 

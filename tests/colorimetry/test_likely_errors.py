@@ -95,16 +95,8 @@ def test_nearly_all_entries_are_within_the_familiar_distance():
 
 
 def test_distances_are_those_of_the_inverse_covariance():
-    rng = np.random.default_rng(3)
-    covariance = np.stack([np.cov(rng.normal(size=(2, 9))) for _ in range(20)])
-    difference = rng.normal(size=(20, 2))
-    plain = [
-        np.sqrt(each @ np.linalg.inv(matrix) @ each)
-        for each, matrix in zip(difference, covariance, strict=True)
-    ]
-    assert_allclose(mahalanobis(covariance, difference), plain, rtol=1e-9)
-    singular = np.diag([4.0, 0.0])[
-        None
-    ]  # huge but finite along directions without variance
-    assert mahalanobis(singular, np.array([[6.0, 0.0]])) == pytest.approx(3)
-    assert 1e100 < mahalanobis(singular, np.array([[0.0, 1.0]])) < np.inf
+    """Huge but finite along directions without variance."""
+    covariance = np.array([[[2.0, 1.0], [1.0, 2.0]], [[4.0, 0.0], [0.0, 0.0]]])
+    inside = mahalanobis(covariance, np.array([[1.0, 0.0], [6.0, 0.0]]))
+    assert inside == pytest.approx([np.sqrt(2 / 3), 3])
+    assert 1e100 < mahalanobis(covariance[1:], np.array([[0.0, 1.0]])) < np.inf

@@ -34,23 +34,6 @@ def test_solid_contains_the_colours_that_a_solver_reaches(space):
     assert_array_equal(limits.contains(colours), best_residual(sensor, colours) <= 1e-8)
 
 
-def test_spectra_of_two_steps_lie_on_the_boundary(sensor):
-    """MacAdam 1935: the purest colours have a reflectance of 0 or 1 with at most two
-    steps.
-
-    Approximately: the spectrum locus is concave at its ends, where the observer has
-    almost no sensitivity.
-    """
-    limits = solid(sensor.matrix)
-    rng = np.random.default_rng(1)
-    for first, last in np.sort(rng.integers(0, 82, (40, 2)), axis=1):
-        box = np.zeros(81)
-        box[first:last] = 1
-        for spectrum in (box, 1 - box):
-            outside = limits.signed_distance((sensor.matrix @ spectrum)[None])[0]
-            assert -1e-5 < outside < 1e-12
-
-
 def test_solid_volume_is_that_of_the_convex_hull(sensor):
     """For few wavelengths, all corners of the zonotope can be listed."""
     few = sensor.matrix[:, ::9]

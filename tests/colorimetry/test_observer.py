@@ -16,7 +16,6 @@ from uplift.colorimetry import observer, tables
 from uplift.colorimetry.gamut import SRGB, conversion
 from uplift.colorimetry.observer import smallest_space
 from uplift.common.errors import OptionError, UnknownNameError, UpliftError
-from uplift.extras.colour.dominant import dominant_wavelengths
 from uplift.extras.colour.spaces import (
     BUILT_IN,
     find_space,
@@ -67,19 +66,6 @@ def test_a_perfect_reflector_is_white(illuminant):
     sensor = observer.sensor("ProPhoto RGB", illuminant)
     assert_allclose(sensor.rgb(np.ones(81)), 1, atol=1e-14)
     assert sensor.light.white[1] == pytest.approx(1, abs=1e-15)
-
-
-@pytest.mark.parametrize("name", tables.names("observer"))
-def test_observers_agree_on_hues(name, sensor):
-    """Those of RGB and of cones, which XYZ are computed from by a matrix, are not
-    observers.
-    """
-    own = observer.sensor(observer=name)
-    rgb = np.array([[0, 0.35, 0.05], [0.7, 0.2, 0.02], [0.5, 0.5, 0.5]])
-    hues, *_ = dominant_wavelengths(own.xyz(rgb), own)
-    usual, *_ = dominant_wavelengths(sensor.xyz(rgb), sensor)
-    assert hues[:2] == pytest.approx(usual[:2], abs=8)
-    assert np.isnan([hues[2], usual[2]]).all()
 
 
 @pytest.mark.parametrize("kind", ["observer", "camera", "illuminant"])

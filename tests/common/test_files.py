@@ -24,23 +24,28 @@ def write(path, text, **options):
         temporary.write_text(text)
 
 
+def fail(path, error):
+    with atomic_write(path, force=True) as temporary:
+        temporary.write_text("half")
+        assert temporary.parent == path.parent
+        raise error
+
+
 @pytest.mark.parametrize("old", ["", "old"])
 @pytest.mark.parametrize("error", [RuntimeError, KeyboardInterrupt])
 def test_the_old_file_remains_after_an_exception(tmp_path, old, error):
     path = tmp_path / "file"
     if old:
         path.write_text(old)
-    with pytest.raises(error), atomic_write(path, force=True) as temporary:
-        temporary.write_text("half")
-        assert temporary.parent == tmp_path
-        raise error
+    with pytest.raises(error):
+        fail(path, error)
     assert os.listdir(tmp_path) == ["file"] * bool(old)
     assert not old or path.read_text() == old
 
 
 def test_a_full_disk_is_an_error_of_the_output(tmp_path):
-    with raises(OutputError, "output") as caught, atomic_write(tmp_path / "new"):
-        raise OSError(errno.ENOSPC, "No space left on device")
+    with raises(OutputError, "output") as caught:
+        fail(tmp_path / "new", OSError(errno.ENOSPC, "No space left on device"))
     assert caught.value.where == str(tmp_path / "new")
     assert "No space left on device" in caught.value.problem
     assert os.listdir(tmp_path) == []

@@ -4,7 +4,6 @@ import csv
 import io
 import json
 import math
-import re
 import unicodedata
 
 import pytest
@@ -106,25 +105,3 @@ def test_numbers_and_other_text_stay(cell):
     text = csv_text(["x", cell], [])
     assert "'" not in text.replace(str(cell), "")
     assert plain_cell(str(cell)) == str(cell)
-
-
-NOUNS = (
-    "entries|nodes|points|lights|lamps|colours|cubes|images|pixels|materials|wavelengths|coefficients|rows|files|"
-    "swatches|builds|answers|textures|samples|labels|slices|surfaces|boxes|candidates"
-)
-COUNT_BY_HAND = re.compile(rf"\{{([^{{}}:]+)(?::,)?\}}+ (?:[a-z]+ )?(?:{NOUNS})\b")
-NEVER_ONE = re.compile(
-    r"[A-Z_]+|.*\b(name|limit|dim|size|height|rings|coefficients|model.count)|Float32Array|len\(images\)|'.*|.*pluralise.*"
-)
-"""Limits, names, sizes and values that are at least 2."""
-
-
-def test_one_entry_is_not_one_entries(repository):
-    by_hand = []
-    for path in (*(repository / "uplift").rglob("*"), *(repository / "cli").rglob("*")):
-        if path.suffix in (".py", ".j2", ".js"):
-            values = map(str.strip, COUNT_BY_HAND.findall(path.read_text("utf-8")))
-            by_hand += [
-                f"{path}: {value}" for value in values if not NEVER_ONE.fullmatch(value)
-            ]
-    assert by_hand == []

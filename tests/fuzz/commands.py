@@ -132,7 +132,7 @@ def _generate(random: Random, path: Path) -> None:
     other = _hostile_text(random)
     cells = ['"' + text.replace('"', '""') + '"' for text in (name, other)]
     files = {
-        CUBE_NAME: json.dumps([name, other, int(random.integers(4))]),
+        CUBE_NAME: "\0\0".join((name, other, choose(random, ("D65", name)))),
         "a.txt": "".join(PLAIN.replace("grey", text, 1) for text in (name, other)),
         "a.csv": (
             "name,400,500,600,700\n"
@@ -156,20 +156,15 @@ def _generate(random: Random, path: Path) -> None:
 
 
 def _forge_cube(text: str) -> None:
-    """Write a cube whose metadata has hostile names in one of four places."""
-    name, other, place = json.loads(
-        text.replace("\\ud800", "?").replace("\\udcff", "?")
-    )
+    """Write a cube whose metadata has hostile names."""
+    name, other, light = text.encode(errors="replace").decode().split("\0\0")
 
     def change(tensors: dict[str, Any], metadata: dict[str, Any]) -> None:
         metadata["entries"][:2] = [name, other]
-        if place == 1:
-            for atlas in metadata["provenance"]["atlases"]:
-                atlas["name"] = name
-        elif place == 2:
-            metadata["provenance"]["left_out"] = [name, other]
-        elif place == 3:
-            metadata["illuminant"] = name
+        metadata["provenance"]["left_out"] = [name, other]
+        metadata["illuminant"] = light
+        for atlas in metadata["provenance"]["atlases"]:
+            atlas["name"] = name
 
     forge(CUBES[0], Path(CUBE_NAME), change)
 

@@ -110,18 +110,15 @@ COLOUR_SEEDS = (
 
 def use_colours(path: Path) -> None:
     """Map the colours into the gamut and query them."""
-    cube = CUBE
+    sensor = CUBE.data.sensor
     with path.open("rb") as file:
-        for rgb in ColourSource().parse_table(file, path.name, cube.data.sensor):
+        for rgb in ColourSource().parse_table(file, path.name, sensor):
             for method in METHODS[1:]:
-                mapped = map_to_gamut(rgb, cube.data.sensor, method).rgb
+                mapped = map_to_gamut(rgb, sensor, method).rgb
                 if not ((mapped >= 0) & (mapped <= 1)).all():
                     raise ValueError(f"{method}: colours outside [0, 1]")
-            clipped = map_to_gamut(rgb, cube.data.sensor, "clip").rgb
-            if not np.array_equal(clipped, np.clip(rgb, 0, 1)):
-                raise ValueError("clipping changed another channel")
-            if not np.isfinite(cube.reflectance(clipped[:8])).all():
-                raise ValueError("reflectances that are not finite")
+                if not np.isfinite(CUBE.reflectance(mapped[:2])).all():
+                    raise ValueError("reflectances that are not finite")
 
 
 CHART = (ROOT / "uplift" / "lab" / "chart" / "measured.csv").read_bytes()

@@ -12,8 +12,6 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 from tests.helpers import raises
 from uplift.common.errors import UpliftError
-from uplift.extras.mitsuba.texels import GREY_WEIGHTS
-from uplift.models.duality import blended_multipliers
 from uplift.models.model import evaluate
 from uplift.models.moments import WARPS, Moments
 from uplift.models.registry import from_description
@@ -66,17 +64,6 @@ def test_spectra_are_constant_outside_their_range(model):
     ends = model.to_reflectance(multipliers @ model.basis([300, 380, 780, 900]).T)
     assert_array_equal(ends[:, 0], ends[:, 1])
     assert_array_equal(ends[:, 2], ends[:, 3])
-
-
-def test_moments_that_rounding_moved_outside_return():
-    """A box-shaped spectrum, rounded to half precision."""
-    model = Moments(9)
-    moments = model.to_storage([[0, 3e4, 0, -1e4, 0, 0, 0, 0, 0]])
-    rounded = moments.astype(np.float16).astype(float)
-    assert not model.try_from_storage(rounded)[1].all()
-    multipliers, valid = blended_multipliers(rounded, GREY_WEIGHTS)
-    assert valid.all()
-    assert_allclose(model.to_storage(multipliers), moments, rtol=0, atol=0.01)
 
 
 @each

@@ -8,14 +8,13 @@ import pytest
 from numpy.testing import assert_allclose
 
 import uplift
-from tests.helpers import raises, with_points
+from tests.helpers import raises, with_absent_points, with_points
 from uplift.colorimetry.delta_e import delta_e_spectra
 from uplift.colorimetry.observer import light
 from uplift.common import machine
 from uplift.common.errors import OptionError
 from uplift.extras.report.diff import diff_cubes, to_json
 from uplift.extras.report.diff_page import render_diff
-from uplift.lattice.point_table import Status
 from uplift.lookup.cube import Cube
 
 LIGHTS = ("D65", "A")
@@ -24,13 +23,11 @@ LIGHTS = ("D65", "A")
 @pytest.fixture(scope="module")
 def two_scenes(plain_cube):
     """The plain cube with its darkest cell alone, and with its brightest alone."""
-    cubes = []
-    for cell in (0, -2):
-        kept = np.zeros(plain_cube.data.lattice.shape, dtype=bool)
-        kept[np.ix_(*[range(plain_cube.dim)[cell : cell + 2 or None]] * 3)] = True
-        status = np.where(kept.ravel(), plain_cube.data.points.status, Status.ABSENT)
-        cubes.append(Cube(with_points(plain_cube.data, status=status.astype(np.uint8))))
-    return cubes
+    data = plain_cube.data
+    position = data.lattice.position(np.arange(data.lattice.size))
+    darkest = (position < 2).all(axis=1)
+    brightest = (position > data.lattice.dim - 3).all(axis=1)
+    return [Cube(with_absent_points(data, kept)) for kept in (darkest, brightest)]
 
 
 @pytest.fixture(scope="module")
