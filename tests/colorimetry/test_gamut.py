@@ -42,9 +42,12 @@ def outside() -> Array:
     saturated, and combinations.
     """
     rng = np.random.default_rng(0)
-    far = np.concatenate([rng.normal(0.5, 1, (4000, 3)), 20 * rng.random((1000, 3))])
-    near = np.clip(far[:3000], 0, 1) + rng.normal(0, 1e-3, (3000, 3))
-    rgb = np.concatenate([far, near, 3 * np.eye(3), -np.eye(3), 2 - 2 * np.eye(3)])
+    near = np.clip(rng.normal(0.5, 0.5, (3000, 3)), 0, 1)
+    near += rng.normal(0, 1e-3, (3000, 3))
+    far = rng.normal(0.5, 1, (4000, 3))
+    bright = 20 * rng.random((1000, 3))
+    corners = (3 * np.eye(3), -np.eye(3), 2 - 2 * np.eye(3))
+    rgb = np.concatenate([near, far, bright, -rng.random((100, 3)), *corners])
     return rgb[((rgb < 0) | (rgb > 1)).any(axis=1)]
 
 
