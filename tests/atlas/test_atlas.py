@@ -35,21 +35,6 @@ def test_an_atlas_is_a_sequence_with_names():
         ATLAS[2]
 
 
-@pytest.mark.parametrize(
-    ("name", "wavelengths", "values"),
-    [
-        ("a", [400, 700], [0.5]),
-        ("a", [400, None, 700], [1, 1, 1]),
-        ("a\nb", [400, 700], [1, 1]),
-        ("a" * 1001, [400, 700], [1, 1]),
-        ("a\ud800", [400, 700], [1, 1]),
-    ],
-)
-def test_entries_from_python_are_validated(name, wavelengths, values):
-    with raises(AtlasError, "atlas"):
-        Entry(name, wavelengths, values)
-
-
 def test_distributions_of_colour_science(tmp_path):
     checker = colour.SDS_COLOURCHECKERS["ColorChecker N Ohta"]
     spectra = from_distributions(checker)
@@ -67,13 +52,21 @@ def test_distributions_of_colour_science(tmp_path):
     assert several["blue"].values.tolist() == [0.8, 0.3, 0.05]
 
 
+def distribution(wavelengths, values):
+    return SimpleNamespace(wavelengths=wavelengths, values=values)
+
+
 @pytest.mark.parametrize(
     ("distributions", "entry"),
     [
         (3, "int"),
         ({"a": [1, 2]}, "a"),
         (SimpleNamespace(labels=["a"], wavelengths=NM, values=NM), None),
-        ({"a": SimpleNamespace(wavelengths=NM, values=NM)}, "a"),
+        ({"a": distribution(NM, NM)}, "a"),
+        ({"a": distribution([400, 700], [0.5])}, "a"),
+        ({"a": distribution([400, None, 700], [1, 1, 1])}, "a"),
+        ({"a\nb": distribution([400, 700], [1, 1])}, "a b"),
+        ({"a\ud800": distribution([400, 700], [1, 1])}, "a\ud800"),
     ],
 )
 def test_invalid_distributions_raise(distributions, entry):

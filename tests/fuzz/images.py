@@ -12,7 +12,7 @@ from collections import ChainMap
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import colour
 import numpy as np
@@ -39,6 +39,8 @@ WIDTH = 7
 LIGHTS = light_reader(uplift.load_emission())
 SURFACES = SurfaceReader(sensor=LIGHTS.sensor)
 HALF_MAX = 65504.0
+TOLERANCE = 3e-3
+"""Largest error, relative to the largest component of colours above 1."""
 SRGB = colour.RGB_COLOURSPACES["sRGB"].copy()
 SRGB.use_derived_transformation_matrices(True)
 BT2020 = "ITU-R BT.2020"
@@ -89,17 +91,15 @@ Row = tuple[Any, Space | None]
 """A statement as its format stores it, and its space, None if it cannot be used."""
 
 
-@dataclass
-class Drawn:
-    """An image in a file, and linear sRGB (n, 3) that it states."""
+class Drawn(NamedTuple):
+    """An image in a file, and linear sRGB (n, 3) that it states: as it is stored, and
+    divided by alpha.
+    """
 
     path: Path
     stated: "Statements"
     light: Array
-    """Colours as they are stored."""
     straight: Array
-    """Colours divided by alpha."""
-    tolerance: float = 1e-3
 
 
 class Statements:
@@ -248,7 +248,6 @@ def draw_png(random: Random, folder: Path) -> Drawn:
 def draw_exr(random: Random, folder: Path) -> Drawn:
     """Draw an OpenEXR file of RGB, XYZ or grey, with alpha or without."""
     kind = choose(random, ("RGB", "XYZ", "XYZ", "Y"))
-    layer = choose(random, ("", "", "diffuse.")) if kind != "Y" else ""
     dtype = choose(random, (np.float32, np.float16))
     # A space that is named is of RGB alone.
     groups = (CHROMATICITIES,) if kind == "XYZ" else (INTEROP, CHROMATICITIES)
@@ -272,11 +271,9 @@ def draw_exr(random: Random, folder: Path) -> Drawn:
         stored[2:4] *= 1 if is_light else alpha[2:4, None]
     stored = stored.astype(dtype)
     alpha = alpha.astype(dtype)
-    planes = {
-        layer + letter: stored[None, :, k].copy() for k, letter in enumerate(kind)
-    }
+    planes = {letter: stored[None, :, k].copy() for k, letter in enumerate(kind)}
     if has_alpha:
-        planes[layer + "A"] = alpha[None]
+        planes["A"] = alpha[None]
     path = folder / "a.exr"
     attributes = {"type": OpenEXR.scanlineimage, **header}
     OpenEXR.File(attributes, planes).write(str(path))
@@ -288,8 +285,7 @@ def draw_exr(random: Random, folder: Path) -> Drawn:
             return xyz_to_srgb(values / luminance, space.white)
         return space.linear_to_srgb(values)
 
-    tolerance = 3e-3 if dtype is np.float16 else 1e-3
-    return Drawn(path, stated, to_srgb(held), to_srgb(divided), tolerance)
+    return Drawn(path, stated, to_srgb(held), to_srgb(divided))
 
 
 def divide_by_alpha(colours: Array, alpha: Array) -> Array:
@@ -381,14 +377,6 @@ def draw_image(random: Random, folder: Path) -> Drawn:
     return choose(random, DRAW)(random, folder)
 
 
-def largest_error(obtained: Array, expected: Array, colours: Array) -> float:
-    """Return the largest difference, relative to the largest component of the
-    ``colours`` if they are above 1.
-    """
-    scale = np.maximum(1, np.abs(colours).max(axis=1, keepdims=True))
-    return float((np.abs(obtained - expected) / scale).max())
-
-
 def wrong(seed: int) -> list[str]:
     """Return what is wrong with the colours of the image of a seed."""
     with tempfile.TemporaryDirectory() as folder:
@@ -402,16 +390,16 @@ def wrong(seed: int) -> list[str]:
             decode = SURFACES.decoder(pixels)
             straight, _ = decode(channels.straight(values))
             codes = {warning.code for warning in SURFACES.warnings(image)}
-    divided = drawn.straight
-    errors = {
-        "light": largest_error(light, drawn.light, drawn.light),
-        "colours": largest_error(straight, np.clip(divided, 0, 1), divided),
-    }
-    findings = [
-        f"{name} differ by {error:.3g}"
-        for name, error in errors.items()
-        if not error <= drawn.tolerance
-    ]
+    findings = []
+    for name, obtained, colours in (
+        ("light", light, drawn.light),
+        ("colours", straight, drawn.straight),
+    ):
+        expected = colours if name == "light" else np.clip(colours, 0, 1)
+        scale = np.maximum(1, np.abs(colours).max(axis=1, keepdims=True))
+        error = np.abs((obtained - expected) / scale).max()
+        if not error <= TOLERANCE:
+            findings.append(f"{name} differ by {error:.3g}")
     if (codes == {"colour-space-assumed"}) != drawn.stated.assumed:
         findings.append(f"warnings {codes}")
     where = f"seed {seed}: {drawn.path.name} {drawn.stated.spaces}"

@@ -13,7 +13,6 @@ from uplift.atlas.resampling import on_grid
 from uplift.colorimetry.observer import light
 from uplift.extras.report.assessment import assess
 from uplift.extras.report.entries import (
-    JAKOB_HANIKA,
     WITHOUT_ATLAS,
     entry_errors,
     find_alternatives,
@@ -176,17 +175,6 @@ def test_alternatives_have_the_colours_of_the_entries_inside_srgb(judged):
         rgb = judged.entries.rgb[inside]
         assert_allclose(sensor.rgb(spectra), rgb, rtol=0, atol=2e-3)
         assert ((spectra >= 0) & (spectra <= 1)).all()
-
-
-def test_jakob_hanika_is_a_sigmoid_of_a_parabola(judged):
-    answer = judged.alternatives[JAKOB_HANIKA].answers
-    t = 2 * answer - 1
-    linear = t / np.sqrt(1 - t**2)  # inverse of equation 5
-    wavelengths = judged.data.sensor.wavelengths
-    fit = np.polynomial.polynomial.polyfit(wavelengths, linear.T, 2)
-    scale = np.abs(linear).max(axis=1, keepdims=True)
-    parabola = np.polynomial.polynomial.polyval(wavelengths, fit)
-    assert np.abs(parabola - linear).max() <= 1e-6 * scale.max()
 
 
 def test_colours_that_no_spectrum_of_the_lattice_has_have_no_answer(judged):
