@@ -53,14 +53,9 @@ def test_entries_outside_the_space_are_rebuilt(cyan_cube, atlases, home):
     assert again.data.atlas.outside.names == ("cyan",)
 
 
-@pytest.mark.parametrize("place", [".", "atlases"])
-def test_atlases_are_found_next_to_the_cube_and_in_the_folder_atlases(
-    tiny_cube, atlases, home, place
-):
-    folder = home.parent / "elsewhere"
-    (folder / place).mkdir(parents=True, exist_ok=True)
-    shutil.copy(atlases / "macbeth.txt", folder / place)
-    assert same(tiny_cube, folder / "cube.uplift")
+def test_atlases_are_found_in_the_folder_atlases(tiny_cube, atlases, home):
+    shutil.copytree(atlases, home / "atlases")
+    assert same(tiny_cube, home / "cube.uplift")
 
 
 @pytest.mark.parametrize(
@@ -140,9 +135,7 @@ def test_two_recorded_files_may_have_one_name(plain_cube, tmp_path):
         {"progress": None},
         {"model": "spline"},
         {"lights": ["D65", "D66"]},
-        {"lights": [3]},
         {"threshold": {"a": 1}},
-        {"coefficients": 99},
         {"solver": "custom"},
         {"dim": 400},
     ],
@@ -170,9 +163,7 @@ def test_options_of_earlier_versions_are_accepted(tiny_cube, atlases):
     assert again.entry_coefficient_count == again.coefficient_count
 
 
-@pytest.mark.parametrize(
-    "provenance", [{}, {"options": {}}, {"options": {"dim": 8}}, {"atlases": []}]
-)
+@pytest.mark.parametrize("provenance", [{}, {"options": {"dim": 8}}, {"atlases": []}])
 def test_a_cube_without_provenance_cannot_be_rebuilt(small_cube, provenance):
     cube = Cube(dataclasses.replace(small_cube.data, provenance=provenance))
     with raises(CubeFileError, "cube-file"):
