@@ -64,7 +64,7 @@ next cell.
 """
 AT = (385.0, 450.0, 525.0, 600.0, 675.0, 775.0)
 COUNTS = ((3, 3), (4, 9), (5, 17), (9, 9), (9, 13), (17, 17))
-RANGES = ((380, 780, 5), (380, 780, 10), (360, 830, 5), (320, 900, 10))
+RANGES = ((380, 780, 5), (360, 830, 5), (380, 780, 10), (320, 900, 10))
 
 
 @dataclass(frozen=True)
@@ -106,37 +106,29 @@ def little_work() -> Iterator[None]:
 
 def odd_options(random: Random, kind: Kind) -> dict[str, Any]:
     """Return options of a build, without atlas, library and looks."""
-    space = choose(random, SPACES)
-    model = choose(random, ("moments", "moments", "moments", "sigmoid"))
-    dim = choose(random, kind.dims)
-    illuminant = choose(random, ("D65", "D65", "A", "E", "D50", "FL2", "FL11"))
-    observer = choose(random, CAMERAS if space == "camera" else OBSERVERS)
-    # Cameras are tabulated at steps of 5 nm.
-    measured = [limits for limits in kind.ranges if space != "camera" or limits[2] == 5]
-    shortest, longest, step = choose(random, measured)
     options: dict[str, Any] = {
-        "space": space,
-        "dim": dim,
-        "model": model,
-        "illuminant": illuminant,
-        "observer": observer,
-        "shortest": shortest,
-        "longest": longest,
-        "step": step,
+        "space": choose(random, SPACES),
+        "dim": choose(random, kind.dims),
+        "model": choose(random, ("moments", "moments", "moments", "sigmoid")),
+        "illuminant": choose(random, ("D65", "D65", "A", "E", "D50", "FL2", "FL11")),
         "axis": choose(random, ("srgb", "linear")),
         "warp": choose(random, ("none", "vision")),
         # Learning is slow.
         "prior": choose(random, ("learnt", "smooth", "smooth", "smooth")),
     }
-    if model == "moments":
-        coefficients, entry_coefficients = choose(random, kind.counts)
-        options["coefficients"] = coefficients
-        options["entry_coefficients"] = entry_coefficients
+    is_camera = options["space"] == "camera"
+    options["observer"] = choose(random, CAMERAS if is_camera else OBSERVERS)
+    # Cameras are tabulated at steps of 5 nm.
+    limits = choose(random, kind.ranges[:2] if is_camera else kind.ranges)
+    options |= zip(("shortest", "longest", "step"), limits, strict=True)
+    if options["model"] == "moments":
+        counts = choose(random, kind.counts)
+        options |= zip(("coefficients", "entry_coefficients"), counts, strict=True)
     return options
 
 
-def odd_atlas(random: Random, size: int) -> uplift.Atlas:
-    """Return an atlas of entries of one shape: smooth, equal, dark, black, white or
+def odd_atlas(random: Random, size: int, path: Path) -> Path:
+    """Write an atlas of entries of one shape: smooth, equal, dark, black, white or
     spiky.
     """
     at = np.arange(380.0, 781.0, 10)
@@ -153,9 +145,9 @@ def odd_atlas(random: Random, size: int) -> uplift.Atlas:
         random.uniform(0, 1, smooth.shape).round(),
     )
     values = choose(random, shapes)
-    return uplift.Atlas(
-        [uplift.Entry(f"e{k}", at, row) for k, row in enumerate(values)]
-    )
+    entries = [uplift.Entry(f"e{k}", at, row) for k, row in enumerate(values)]
+    write_atlas(uplift.Atlas(entries), path)
+    return path
 
 
 def distance_to_solid(matrix: Array, rgb: Array, near: Array) -> Array:
@@ -195,25 +187,15 @@ def broken_laws(seed: int, folder: Path, kind: Kind = SMALL) -> Iterator[str]:
     size = choose(random, kind.sizes)
     given: dict[str, Any] = {"atlas": None}
     if size:
-        given["atlas"] = folder / "atlas.csv"
-        write_atlas(odd_atlas(random, size), given["atlas"])
-    if (
-        options["prior"] == "learnt"
-        and options.get("coefficients", 3) > 3
-        and random.random() < 0.3
-    ):
-        given["library"] = folder / "library.csv"
-        write_atlas(odd_atlas(random, 12), given["library"])
-    if (
-        options.get("entry_coefficients", 3) > 3
-        and options["space"] != "camera"
-        and random.random() < 0.15
-    ):
+        given["atlas"] = odd_atlas(random, size, folder / "atlas.csv")
+    is_learnt = options["prior"] == "learnt" and options.get("coefficients", 3) > 3
+    if is_learnt and random.random() < 0.5:
+        given["library"] = odd_atlas(random, 12, folder / "library.csv")
+    if options.get("entry_coefficients", 3) > 3 and options["space"] != "camera":
         light = "A" if options["illuminant"] != "A" else "D65"
-        given["looks"] = uplift.Look(
-            tuple(random.uniform(0.2, 0.6, 3)),
-            {light: tuple(random.uniform(0.2, 0.6, 3))},
-        )
+        own, other = random.uniform(0.2, 0.6, (2, 3))
+        if random.random() < 0.15:
+            given["looks"] = uplift.Look(tuple(own), {light: tuple(other)})
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", UpliftWarning)
         cube = uplift.build(**given, **options)
