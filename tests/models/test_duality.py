@@ -4,7 +4,6 @@ adaptive integration.
 
 import numpy as np
 import pytest
-from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 from scipy.integrate import quad
 
@@ -12,8 +11,6 @@ from tests.helpers import raises
 from uplift.common.errors import UpliftError
 from uplift.lab.study.unmirrored import try_complex_multipliers
 from uplift.models import duality
-
-small = st.floats(-3, 3)
 
 
 def test_moments_are_their_defining_integrals():
