@@ -152,7 +152,7 @@ def atlases(draw):
 @given(spectra=atlases())
 @example(spectra=Atlas((Entry("%", [400, 700], [0.0, 1.0]),)))
 @example(spectra=Atlas((Entry("STANDARDDEVIATION", [400, 700], [0.0, 1.0]),)))
-@example(spectra=Atlas((Entry("# 1", [400, 700], [0.0, 1.0]),)))
+@example(spectra=Atlas((Entry("# 1", [400, 700], [0.0, 1.0], description='"a"'),)))
 def test_files_keep_every_bit(suffix, spectra):
     """Tables keep names and samples, unless names state another quantity or scale."""
     names = [entry.name for entry in spectra]

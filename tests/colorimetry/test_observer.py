@@ -224,6 +224,9 @@ def test_black_bodies_are_those_of_colour_science(kelvin):
     theirs = colour.sd_blackbody(kelvin, colour.SpectralShape(380, 780, 5)).values
     ours = observer.illuminant_spd(f"{kelvin} k")
     assert_allclose(ours / ours[36], theirs / theirs[36], rtol=5e-4)
+    named = tables.look_up("illuminant", f"{kelvin}K")
+    named = named.align(colour.SpectralShape(380, 780, 5)).values
+    assert_allclose(named / named[36], ours / ours[36], rtol=1e-9)
 
 
 @pytest.mark.parametrize("nominal", [50, 55, 65, 75])

@@ -196,6 +196,7 @@ def test_the_worst_patch_is_named_and_other_columns_are_ignored(
 
 
 TEXT = (KIT / "spectra.csv").read_text()
+SAMPLE = KIT.parents[1] / "uplift" / "samples" / "files" / "wood.png"
 
 
 @pytest.mark.parametrize(
@@ -205,11 +206,13 @@ TEXT = (KIT / "spectra.csv").read_text()
         (np.zeros((100, 161, 3)), TextureError, "texture"),
         (np.full((100, 160, 3), np.nan), TextureError, "texture"),
         (b"no picture", TextureError, "texture"),
+        (SAMPLE.read_bytes(), TextureError, "texture"),
         (A.read_bytes()[:-500], TextureError, "file-unreadable"),
         (None, TextureError, "file-not-found"),
         ("", ColourError, "colour"),
         (TEXT[: TEXT.rindex("\n", 0, -1)], ColourError, "colour"),
         (TEXT.replace(",700\n", ",701\n"), ColourError, "colour"),
+        (TEXT.replace("grey 0,0.0", "grey 0,0.5"), ColourError, "colour"),
         (TEXT.replace("grey 0,0.0", "grey 0,nan"), ColourError, "colour"),
     ],
 )
