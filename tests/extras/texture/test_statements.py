@@ -36,7 +36,9 @@ PROFILE = by_matrix(P3, SRGB_TABLE)
 P3_COLOURS = FROM_SRGB @ P3_TO_SRGB.T
 
 
-SEEDS = [*range(60), 77, 94, 97, 98, 101, 118, 119, 147, 160, 196, 202, 275]
+LATER = [77, 87, 89, 91, 94, 97, 98, 107, 118, 121, 126, 134, 171, 175, 202, 209, 221]
+LATER += [228, 235, 247, 275, 325, 369]
+SEEDS = [*range(72), *LATER]
 """Some images, and the first ones that have each of the statements."""
 
 
