@@ -4,7 +4,7 @@ are on its rim.
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 
@@ -22,8 +22,8 @@ KNOTS = np.array([[0.6, 0.5], [0.3, 0.6], [0.0, 0.55], [0.05, 0.2], [0.25, 0.0]]
 LATTICE = ChromaticityLattice(WHITE, KNOTS, np.array([0.0, 0.3, 0.7, 1.0]))
 
 
-def corners(cells):
-    """Chromaticities of the four corners of cells, in the order of their weights."""
+def at(cells):
+    """Chromaticities of cells by their weights of the four corners."""
     nodes = LATTICE.nodes
     after = (cells.sector + 1) % len(KNOTS)
     places = (
@@ -32,18 +32,18 @@ def corners(cells):
         nodes[after, cells.ring],
         nodes[after, cells.ring + 1],
     )
-    return np.stack(places, axis=1)
+    return (cells.weights[..., None] * np.stack(places, axis=1)).sum(axis=1)
 
 
+@settings(max_examples=30)
 @given(st.integers(0, 4), st.floats(0, 1), st.floats(0, 1))
 def test_weights_give_back_the_chromaticity(sector, along, share):
     rim = (1 - along) * KNOTS[sector] + along * KNOTS[(sector + 1) % 5]
     uv = (WHITE + share * (rim - WHITE))[None]
     cells = LATTICE.locate(uv)
-    weights = cells.weights
-    assert weights.min() >= 0
-    assert weights.sum() == pytest.approx(1)
-    assert_allclose((weights[..., None] * corners(cells)).sum(axis=1), uv, atol=1e-12)
+    assert cells.weights.min() >= 0
+    assert cells.weights.sum() == pytest.approx(1)
+    assert_allclose(at(cells), uv, atol=1e-12)
     assert LATTICE.contains(uv).all()
 
 
@@ -51,10 +51,7 @@ def test_chromaticities_outside_are_not_contained_and_move_to_the_rim():
     outside = WHITE + 1.5 * (KNOTS - WHITE)
     assert not LATTICE.contains(outside).any()
     assert not LATTICE.contains(np.full((1, 2), np.nan)).any()
-    cells = LATTICE.locate(outside)
-    assert_allclose(
-        (cells.weights[..., None] * corners(cells)).sum(axis=1), KNOTS, atol=1e-12
-    )
+    assert_allclose(at(LATTICE.locate(outside)), KNOTS, atol=1e-12)
 
 
 def test_chromaticity_of_equal_energy():
@@ -91,11 +88,6 @@ def test_all_mixtures_of_wavelengths_lie_within_the_bend(locus):
     visible = np.flatnonzero(RADIOMETRY.sum(axis=1) > 1e-6)
     first, second = np.meshgrid(visible, visible)
     xyz = RADIOMETRY / RADIOMETRY.sum(axis=1, keepdims=True).clip(1e-12)
-    uv = np.concatenate(
-        [
-            chromaticity(xyz[first] * part + xyz[second]).reshape(-1, 2)
-            for part in (0.3, 1, 3)
-        ]
-    )
+    uv = chromaticity(xyz[first] + xyz[second]).reshape(-1, 2)
     share = locus[0].polar(uv - D65)[2]
     assert 1 + 1e-4 < share.max() <= 1 + LOCUS_TOLERANCE

@@ -1,7 +1,7 @@
 """Text of many numbers is that of ``repr``."""
 
 import numpy as np
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from uplift.extras.files.numbers import FEW, LEAST_LARGE, LEAST_PLAIN, number_rows
@@ -11,6 +11,7 @@ def plain_rows(values, separator):
     return [separator.join(map(repr, row)) for row in values.tolist()]
 
 
+@settings(max_examples=20)
 @given(st.lists(st.tuples(st.floats(), st.floats()), min_size=1))
 def test_any_floats_are_written_as_by_repr(rows):
     values = np.repeat(np.array(rows), FEW, axis=0)

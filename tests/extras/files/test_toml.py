@@ -4,7 +4,7 @@ import tomllib
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from uplift.extras.files.toml import toml_text
@@ -16,12 +16,14 @@ def again(value):
     return tomllib.loads(toml_text({"some_key": value}))["some-key"]
 
 
+@settings(max_examples=20)
 @given(TEXT)
 def test_any_text_round_trips(text):
     assert again(text) == text
     assert again([text]) == [text]
 
 
+@settings(max_examples=20)
 @given(st.floats(allow_nan=False))
 def test_numbers_round_trip_to_nine_digits(value):
     stored = again(value)

@@ -1,15 +1,14 @@
 """Files of paints: what is written is read, and what does not fit raises."""
 
-import tomllib
 from dataclasses import replace
 
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
-from tests.extras.paint.invented import NAMES, invented
+from tests.extras.paint.invented import invented
 from tests.helpers import raises
-from uplift.common.errors import OutputError, PaintError
+from uplift.common.errors import PaintError
 from uplift.extras.paint.paints_file import read_paints, to_toml, write_paints
 from uplift.extras.paint.pigments import Pigment
 
@@ -66,18 +65,11 @@ def test_paints_round_trip(paints, path):
 
 
 def test_a_file_by_hand_needs_little(path):
-    path.write_text(TEXT)
+    path.write_text(f"{TEXT}absorption-errors = {ROW}\n{SECOND}")
     stored = read_paints(path)
-    assert stored.names == ("grey",)
+    assert stored.names == ("grey", "black")
     assert (stored.surface.outside, stored.surface.inside) == (0, 0)
     assert (stored.errors, stored.prices, stored.is_to_scale) == (None, (), True)
-
-
-def test_errors_of_some_paints_are_left_out(paints, path):
-    text = to_toml(paints)
-    end = text.index("absorption-errors")
-    path.write_text(text[:end] + text[text.index("\n", end) + 1 :])
-    assert read_paints(path).errors is None
 
 
 def changed(old, new):
@@ -90,33 +82,20 @@ def row(name, values):
 
 
 MALFORMED = {
-    "not TOML": "format = ",
-    "empty": "",
-    "a list": "[1, 2]",
     "another format": changed("paints 1", "paints 2"),
     "no format": changed('format = "uplift paints 1"\n', ""),
-    "unknown key": changed("[[paints]]", "unit = 1\n[[paints]]"),
     "unknown key of a paint": TEXT + "scatter = 1\n",
     "no paints": TEXT[: TEXT.index("[[paints]]")],
-    "no scattering": TEXT[: TEXT.index("scattering")],
     "short row": row("absorption", ROW[:-1]),
-    "long row": row("scattering", [*ROW, 1.0]),
     "short errors": TEXT + f"absorption-errors = {ROW[:-1]}\n",
-    "text": row("absorption", ["a"] * 16),
-    "not a number": row("absorption", "[nan, " + "0.5, " * 15 + "]"),
-    "infinite": row("absorption", "[inf, " + "0.5, " * 15 + "]"),
+    "huge": row("absorption", [1e13, *ROW[1:]]),
     "negative": row("scattering", [-0.1, *ROW[1:]]),
-    "neither absorbs nor scatters": row("scattering", [0.0, *ROW[1:]]).replace(
-        f"absorption = {ROW}", f"absorption = {[0.0, *ROW[1:]]}"
-    ),
+    "neither absorbs nor scatters": TEXT.replace("[0.5,", "[0.0,"),
     "descending": changed(str(GRID), str(GRID[::-1])),
-    "twice": changed(str(GRID), str([GRID[0], *GRID[:-1]])),
     "uneven": changed(str(GRID), str([*GRID[:-1], 701.0])),
     "from 420 nm": changed(str(GRID), str([nm + 20 for nm in GRID])),
     "coarse": changed(str(GRID), str([400 + 30 * step for step in range(16)])),
-    "far": changed(str(GRID), str([100 * nm for nm in GRID])),
     "surface of 1": changed("[[paints]]", "[surface]\ninside = 1.0\n[[paints]]"),
-    "negative surface": changed("[[paints]]", "[surface]\noutside = -1\n[[paints]]"),
     "negative price": TEXT + "price = -1\n",
     "empty name": changed('"grey"', '""'),
     "two lines": changed('"grey"', '"a\\nb"'),
@@ -130,29 +109,3 @@ def test_malformed_files_raise(path, text):
     with raises(PaintError, "invalid-file") as caught:
         read_paints(path)
     assert caught.value.path == path
-
-
-def test_two_paints_by_hand(path):
-    path.write_text(TEXT + SECOND)
-    assert read_paints(path).names == ("grey", "black")
-
-
-def test_missing_files_raise(path):
-    with raises(PaintError):
-        read_paints(path)
-    path.write_bytes(b"\xff\xfe")
-    with raises(PaintError, "invalid-file"):
-        read_paints(path)
-
-
-def test_files_that_exist_are_replaced_if_forced(path):
-    path.write_text("mine")
-    with raises(OutputError, "file-exists"):
-        write_paints(invented(), path)
-    assert path.read_text() == "mine"
-    write_paints(invented(), path, force=True)
-    assert read_paints(path).names == NAMES
-
-
-def test_text_is_toml_with_a_remark(paints):
-    assert tomllib.loads(to_toml(paints))["paints"][0]["price"] == 0.35
