@@ -8,6 +8,7 @@ import colour
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
+from scipy.special import expit
 
 import uplift
 from tests.conftest import MACBETH
@@ -92,23 +93,18 @@ def test_invalid_queries_are_refused(small_cube, red, mode, error):
         list(query(small_cube, [[red, 0.5, 0.5]], mode=mode))
 
 
-def colours_outside(cube, count=200):
+def colours_outside(cube):
     """Return XYZ of smooth band-pass and band-stop reflectances that lie outside the
     space of a cube.
     """
-    sensor = cube.data.sensor
+    nm = cube.data.sensor.wavelengths
     rng = np.random.default_rng(0)
-    nm = sensor.wavelengths
-    edges = np.sort(rng.uniform(380, 780, (count, 2, 1)), axis=1)
-    width = rng.uniform(5, 40, (count, 1))
-    band = (
-        1
-        / (1 + np.exp(-(nm - edges[:, 0]) / width))
-        / (1 + np.exp((nm - edges[:, 1]) / width))
-    )
-    spectra = 0.02 + 0.96 * np.where(rng.random((count, 1)) < 0.5, band, 1 - band)
-    rgb = sensor.rgb(spectra)
-    return sensor.xyz(rgb[~in_unit_cube(rgb)])
+    low = rng.uniform(380, 580, (200, 1))
+    high = rng.uniform(500, 780, (200, 1))
+    width = rng.uniform(5, 40, (200, 1))
+    band = expit((nm - low) / width) * expit((high - nm) / width)
+    rgb = cube.data.sensor.rgb(0.02 + 0.96 * np.concatenate([band, 1 - band]))
+    return cube.data.sensor.xyz(rgb[~in_unit_cube(rgb)])
 
 
 def test_realisable_colours_outside_have_their_colour():
@@ -176,11 +172,8 @@ def test_colours_are_realisable_if_the_solid_contains_them():
     """Also in cells whose corners are stand-ins that were not fitted, as in cubes of
     cameras.
     """
-    cube = uplift.build(dim=6, space="camera", observer="Nikon 5100 (NPL)")
-    rgb = np.concatenate(
-        [[[0.0051, 0.1433, 0.4522]], np.random.default_rng(8).random((60, 3))]
-    )
+    cube = uplift.build(dim=4, space="camera", observer="Nikon 5100 (NPL)")
+    rgb = np.random.default_rng(8).random((60, 3))
     expected = cube.data.solid.contains(rgb)
     assert 0 < expected.sum() < 60
-    found = [answer.realisable for answer in query(cube, rgb)]
-    assert_array_equal(found, expected)
+    assert_array_equal([answer.realisable for answer in query(cube, rgb)], expected)

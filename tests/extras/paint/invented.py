@@ -1,6 +1,5 @@
 """Invented paints, and samples of them as if measured."""
 
-from dataclasses import replace
 from itertools import product
 
 import numpy as np
@@ -86,18 +85,6 @@ def measured(paints, shares, noise=0.0, films=(), seed=1):
         grounds,
         paints.wavelengths,
         MeasuredSpectra(np.clip(values, 0, 1)),
-    )
-
-
-def chosen(samples, rows):
-    """Return some of the samples, or all in another order."""
-    return replace(
-        samples,
-        names=tuple(samples.names[row] for row in rows),
-        shares=samples.shares[rows],
-        thickness=samples.thickness[rows],
-        grounds=samples.grounds[rows],
-        measured=type(samples.measured)(samples.measured.values[rows]),
     )
 
 

@@ -94,12 +94,3 @@ def compile_hlsl(path, count):
     command = "glslangValidator -D -V -S comp -e main main.hlsl -o main.spv"
     output_of(*command.split(), cwd=path.parent)
     return path.with_name("main.spv")
-
-
-def compile_glsl(path):
-    """Compile a fragment shader."""
-    need(GLSLANG)
-    call = "float p[TUBES_PAINTS]; p[0] = 1.0; float c[3]; tubes_mix(p, c); o.r = c[0];"
-    text = f"#version 330\n{path.read_text()}out vec4 o;\nvoid main() {{ {call} }}\n"
-    path.with_name("a.frag").write_text(text)
-    output_of("glslangValidator", "a.frag", cwd=path.parent)

@@ -7,9 +7,8 @@ import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
 from tests.extras.paint import run_mixer
-from tests.helpers import output_of, raises
+from tests.helpers import output_of
 from tests.parts import NODE, need
-from uplift.common.errors import OutputError
 from uplift.extras.colour.srgb import decode, encode
 from uplift.extras.paint.mixer_programs import write_mixer
 from uplift.extras.paint.rgb_mixer import make_mixer
@@ -124,10 +123,3 @@ def test_numbers_outside_are_refused_in_javascript(folder, call):
         "console.log(name);\n"
     )
     assert output_of("node", folder / "outside.mjs") == "RangeError\n"
-
-
-def test_tables_of_others_stay(small_cube, tmp_path):
-    (tmp_path / "a.bin").write_text("of another program")
-    with raises(OutputError):
-        write_mixer(small_cube, tmp_path / "a.glsl", style="mixer-glsl", res=2)
-    assert [path.name for path in tmp_path.iterdir()] == ["a.bin"]

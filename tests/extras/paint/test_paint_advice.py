@@ -1,7 +1,5 @@
 """Samples to measure next: new ones, and worth what is predicted."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
@@ -35,25 +33,6 @@ def test_a_measured_sample_is_worth_what_was_predicted(three_paints, opaque_fit)
     after = advise_samples(more, 5)
     assert after.error == pytest.approx(advice.samples[0].error, rel=0.1)
     assert name not in [sample.name for sample in after.samples]
-
-
-def test_films_alone_are_advised_to_hide(fitted):
-    """An opaque sample of a paint counts as new if only films of it are known."""
-    films = ~fitted.samples.is_opaque
-    opaque = replace(
-        fitted.samples, thickness=np.where(films, np.inf, fitted.samples.thickness)
-    )
-    known = advise_samples(replace(fitted, samples=opaque), 10).samples
-    thin = replace(fitted.samples, thickness=np.ones(len(films)))
-    new = advise_samples(replace(fitted, samples=thin), 10).samples
-    extra = {sample.name for sample in new} - {sample.name for sample in known}
-    assert extra == {
-        "white",
-        "yellow",
-        "red",
-        "1 yellow : 4 white",
-        "1 red : 4 white",
-    }
 
 
 def test_one_paint_has_an_expected_error():

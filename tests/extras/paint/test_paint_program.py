@@ -74,14 +74,12 @@ def test_few_wavelengths_have_the_colours_of_all(paints, samples):
     exact = np.clip(sensor.rgb(paints.reflectance(parts)), 0, 1)
     near = np.clip(samples.paints.reflectance(parts) @ samples.weights.T, 0, 1)
     errors = delta_e_rgb(sensor, exact, near)
-    assert errors.mean() < 1.5 * samples.opaque_errors.mean()
+    assert errors.mean() < 1.5 * samples.opaque_errors.mean() < 0.45
     assert errors.max() < 2 * samples.opaque_errors.max()
-    assert samples.opaque_errors.mean() < 0.3
     assert samples.layer_errors.mean() < 0.3
 
 
-def test_shaders_compile(samples, folder):
-    run_paints.compile_glsl(folder / "tubes.glsl")
+def test_hlsl_compiles(samples, folder):
     assert run_paints.compile_hlsl(folder / "tubes.hlsl", 4).stat().st_size > 1000
 
 

