@@ -138,6 +138,16 @@ def test_an_entry_outside_the_space_has_its_spectrum_and_its_colour(
     assert answer.light_errors == {"FL11": pytest.approx([own, own], abs=1e-6)}
 
 
+def test_files_without_its_measurement_do_not_know_its_error(cyan_cube):
+    atlas = cyan_cube.data.atlas
+    older = replace(atlas, outside=replace(atlas.outside, measured=None))
+    cube = Cube(replace(cyan_cube.data, atlas=older))
+    at = cube.data.sensor.xyz(atlas.outside.rgb)
+    (answer,) = query_xyz(cube, at, lights=[light("FL11")])
+    assert np.isnan(answer.light_errors["FL11"]).all()
+    assert answer.errors[0] == atlas.outside.error[0]
+
+
 def without_outside(cube):
     return Cube(replace(cube.data, atlas=replace(cube.data.atlas, outside=None)))
 

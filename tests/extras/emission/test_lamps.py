@@ -67,6 +67,7 @@ def test_narrow_lines_keep_their_energy(line):
         ((700, 400), (1, 1)),
         ((400, 700), (0, 0)),
         ((400, 700), (-1, 1)),
+        ((400, 700), (1, np.nan)),
     ],
 )
 def test_bad_lamps(wavelengths, power):
@@ -82,6 +83,7 @@ PRESENT = {
     }
 }
 """Forms of rawtoaces."""
+CAMERA = {"range": [380, 780, 5], "sensitivity": [[1, 2, 3]] * 81}
 
 
 @pytest.mark.parametrize(
@@ -126,7 +128,7 @@ def test_names_of_illuminants_are_not_taken(write, name):
         ("macbeth.txt", MACBETH.read_text("utf-8"), "not-a-lamp"),
         ("other.json", "[]", "atlas"),
         ("broken.json", "{", "atlas"),
-        ("camera.json", json.dumps(FIRST | {"spec": [[1, 2, 3]] * 81}), "atlas"),
+        ("camera.json", json.dumps(CAMERA), "atlas"),
         ("range.json", json.dumps(FIRST | {"spec": [1, 2, 3]}), "atlas"),
         ("short.json", json.dumps(FIRST | {"range": [450, 650, 2.5]}), "atlas"),
         ("dark.json", json.dumps(FIRST | {"spec": [0] * 81}), "atlas"),

@@ -20,7 +20,7 @@ FILMS = tuple((paint, 0.5, ground) for paint, ground in product(range(3), (0.0, 
 """Films of the first three samples of `plan`, on a black and a light ground."""
 
 
-def invented(wavelengths=WAVELENGTHS, names=NAMES, surface=OIL):
+def invented(wavelengths=WAVELENGTHS, names=NAMES):
     """Return paints with smooth K and S: a white one, and others that absorb."""
     nm = wavelengths
     absorption = {
@@ -39,7 +39,7 @@ def invented(wavelengths=WAVELENGTHS, names=NAMES, surface=OIL):
         np.stack([absorption[name] for name in names]),
         np.stack([scattering[name] for name in names]),
     )
-    return Paints(tuple(names), nm, pigments, surface)
+    return Paints(tuple(names), nm, pigments, OIL)
 
 
 def plan(paints):

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from tests.compiling import compile_in
-from tests.extras.export.run_program import STRICT, draw, padded
+from tests.extras.export.run_program import STRICT, draw
 from tests.helpers import output_of
 from tests.parts import CC, CHROMIUM, CXX, NODE, SANITIZED, SANITIZERS, need
 
@@ -128,19 +128,24 @@ def js(path, pairs, shares):
     return np.array(json.loads(output_of("node", main, input=json.dumps(given))))
 
 
-def glsl(path, pairs, shares, dim):
-    """Return mixtures (n, 3), by WebGL 2 in Chromium."""
+def shade(path, code, pixels, upload="", **data):
+    """Return what a shader draws for pixels (n, 4), by WebGL 2 in Chromium."""
     need(CHROMIUM)
-    count = int(np.ceil(np.sqrt(len(pairs)))) ** 2
-    first = padded(pairs[:, 0], count)
-    first[: len(shares), 3] = shares
-    data = {
-        "code": FRAGMENT.format(code=path.read_text()),
-        "table": base64.b64encode(path.with_suffix(".bin").read_bytes()).decode(),
-        "seconds": base64.b64encode(padded(pairs[:, 1], count).tobytes()).decode(),
-        "dim": dim,
-    }
-    found = draw(path, first, data, UPLOAD)
+    side = int(np.ceil(np.sqrt(len(pixels))))
+    padding = np.zeros((side * side - len(pixels), 4))
+    first = np.concatenate([pixels, padding]).astype(np.float32)
+    data = {"table": "", **data, "code": code.format(code=path.read_text())}
+    found = draw(path, first, data, upload)
     if found is None:
         pytest.skip("the browser has no WebGL 2")
-    return found[: len(pairs), :3]
+    return found[: len(pixels)]
+
+
+def glsl(path, pairs, shares, dim):
+    """Return mixtures (n, 3), whose number is a square."""
+    first = np.column_stack([pairs[:, 0], shares])
+    second = np.column_stack([pairs[:, 1], shares])
+    table = base64.b64encode(path.with_suffix(".bin").read_bytes()).decode()
+    seconds = base64.b64encode(second.astype(np.float32).tobytes()).decode()
+    data = {"table": table, "seconds": seconds, "dim": dim}
+    return shade(path, FRAGMENT, first, UPLOAD, **data)[:, :3]

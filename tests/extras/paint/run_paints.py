@@ -5,15 +5,11 @@ the layer, and linear RGB.
 It skips the test if the compiler or the browser is lacking.
 """
 
-import base64
-
 import numpy as np
-import pytest
 
-from tests.extras.export.run_program import draw
-from tests.extras.paint.run_mixer import run_c
+from tests.extras.paint.run_mixer import run_c, shade
 from tests.helpers import output_of
-from tests.parts import CHROMIUM, GLSLANG, need
+from tests.parts import GLSLANG, need
 
 HOST = """
 #include <stdio.h>
@@ -71,18 +67,9 @@ def glsl(path, parts, films):
     """Return linear RGB and the fourth reflectance (n, 4) of films (n, 2) of one
     mixture, of a thickness and on a grey ground, by WebGL 2 in Chromium.
     """
-    need(CHROMIUM)
-    side = int(np.ceil(np.sqrt(len(films))))
-    pixels = np.zeros((side * side, 4), np.float32)
-    pixels[: len(films), 3] = films[:, 0]
-    pixels[: len(films), 2] = films[:, 1]
     listed = ", ".join(str(float(part)) for part in parts)
-    code = FRAGMENT.format(code=path.read_text(), parts=listed)
-    data = {"code": code, "table": base64.b64encode(b"").decode()}
-    found = draw(path, pixels, data, "")
-    if found is None:
-        pytest.skip("the browser has no WebGL 2")
-    return found[: len(films)]
+    code = FRAGMENT.replace("{parts}", listed)
+    return shade(path, code, films[:, [0, 0, 1, 0]])
 
 
 def compile_hlsl(path, count):

@@ -7,8 +7,9 @@ import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
 from tests.extras.paint import run_mixer
-from tests.helpers import output_of
+from tests.helpers import output_of, raises
 from tests.parts import NODE, need
+from uplift.common.errors import UnknownNameError
 from uplift.extras.colour.srgb import decode, encode
 from uplift.extras.paint.mixer_programs import write_mixer
 from uplift.extras.paint.rgb_mixer import make_mixer
@@ -33,15 +34,15 @@ def folder(small_cube, tmp_path_factory):
 
 @pytest.fixture
 def pairs(rng):
-    """Pairs (500, 2, 3), with corners of the cube."""
-    colours = rng.random((500, 2, 3))
+    """Pairs (484, 2, 3), with corners of the cube."""
+    colours = rng.random((484, 2, 3))
     colours[:100] = colours[:100].round()
     return colours.astype(np.float32).astype(float)
 
 
 @pytest.fixture
 def shares(rng):
-    shares = rng.random(500)
+    shares = rng.random(484)
     shares[::10] = 0
     shares[1::10] = 1
     return shares.astype(np.float32).astype(float)
@@ -50,9 +51,9 @@ def shares(rng):
 SANITIZED = partial(run_mixer.c, compiler="sanitized")
 FAST = partial(run_mixer.c, compiler="fast")
 PROGRAMS = [
-    (run_mixer.c, ".h", 1e-6),
-    (partial(run_mixer.c, compiler="cpp"), ".h", 1e-6),
-    (SANITIZED, ".h", 1e-6),
+    (run_mixer.c, ".h", 5e-6),
+    (partial(run_mixer.c, compiler="cpp"), ".h", 5e-6),
+    (SANITIZED, ".h", 5e-6),
     (run_mixer.js, ".mjs", 1e-9),
 ]
 
@@ -61,14 +62,10 @@ PROGRAMS = [
 def test_programs_mix_as_python(folder, mixer, pairs, shares, run, suffix, tolerance):
     found = run(folder / f"paint{suffix}", pairs, shares)
     expected = mixer.mix(pairs[:, 0], pairs[:, 1], shares)
-    assert_allclose(found[:, 0], expected, atol=5 * tolerance)
-    assert_allclose(found[:, 1], expected, atol=5 * tolerance)
+    assert_allclose(found[:, 0], expected, atol=tolerance)
+    assert_allclose(found[:, 1], expected, atol=tolerance)
     codes = encode(mixer.mix(decode(pairs[:, 0]), decode(pairs[:, 1]), shares))
     assert_allclose(found[:, 2], codes, atol=1e-4)
-    for share, end in ((0, 0), (1, 1)):
-        at_end = shares == share
-        assert_allclose(found[at_end, 0], pairs[at_end, end], atol=tolerance)
-        assert_allclose(found[at_end, 2], pairs[at_end, end], atol=1e-5)
 
 
 def test_the_shader_mixes_as_python(folder, mixer, pairs, shares):
@@ -76,9 +73,8 @@ def test_the_shader_mixes_as_python(folder, mixer, pairs, shares):
     found = run_mixer.glsl(folder / "paint.glsl", pairs, shares, DIM)
     expected = mixer.mix(pairs[:, 0], pairs[:, 1], shares)
     assert_allclose(encode(found), encode(expected), atol=0.004)
-    for share, end in ((0, 0), (1, 1)):
-        at_end = shares == share
-        assert_allclose(found[at_end], pairs[at_end, end], atol=1e-5)
+    at_end = shares == shares.round()
+    assert_allclose(found[at_end], expected[at_end], atol=1e-5)
 
 
 def test_bytes_end_at_their_colours(folder, rng):
@@ -123,3 +119,8 @@ def test_numbers_outside_are_refused_in_javascript(folder, call):
         "console.log(name);\n"
     )
     assert output_of("node", folder / "outside.mjs") == "RangeError\n"
+
+
+def test_other_styles_are_refused(small_cube, tmp_path):
+    with raises(UnknownNameError, "unknown-name"):
+        write_mixer(small_cube, tmp_path / "a.h", style="mixer-rust")

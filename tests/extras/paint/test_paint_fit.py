@@ -49,13 +49,6 @@ def test_exact_films_determine_the_paints_and_their_surface(three_paints):
     assert {progress.stage for progress in reported} == {"paints"}
 
 
-def test_exact_opaque_samples_determine_mixtures(three_paints, opaque_fit):
-    """Though K and S only up to a factor, and the surface roughly."""
-    assert mixture_errors(opaque_fit.paints, three_paints).max() < 0.05
-    assert opaque_fit.delta_e.max() < 0.05
-    assert opaque_fit.paints.surface.outside == pytest.approx(0.04, abs=0.03)
-
-
 def test_noise_is_within_the_stated_errors(three_paints, fitted):
     assert mixture_errors(fitted.paints, three_paints).mean() < 0.2
     stated = fitted.paints.errors
@@ -91,16 +84,11 @@ def test_one_mass_tone_leaves_the_scattering_to_the_rule(three_paints):
 
 def test_colours_alone_predict_mixtures(three_paints, opaque_fit):
     sensor = observer.sensor(wavelengths=(400, 700, 20))
-    exact = opaque_fit.samples.measured.values
-    rgb = np.clip(sensor.rgb(exact), 0, 1)
+    rgb = np.clip(sensor.rgb(opaque_fit.samples.measured.values), 0, 1)
     samples = replace(opaque_fit.samples, measured=MeasuredColours(rgb))
-
-    def guess(colours, wavelengths):
-        return exact.mean(axis=1, keepdims=True) * np.ones(len(WAVELENGTHS))
-
-    found = fit_paints(samples, guess=guess)
+    found = fit_paints(samples)
     assert found.delta_e.max() < 1
-    assert mixture_errors(found.paints, three_paints).mean() < 1
+    assert mixture_errors(found.paints, three_paints).mean() < 1.5
 
 
 def test_paints_without_light_and_films_that_hide_are_fitted():

@@ -77,6 +77,7 @@ SAME = {
     "L*a*b*": (with_columns("L*,a*,b*,", "90,-1,2,", "20,3,-50,"), "L*, a*, b*"),
     "an unused paint": (with_columns("red,", ",", ","), ""),
     "a colour": (with_columns("colour,", "#ffffff,", "#0000ff,"), ""),
+    "letters of colours": (with_columns("R,G,B,", "5,1,2,", "1,20,200,"), "R, G, B"),
     "quantities": (
         with_columns(QUANTITIES, "1,2,80,21.5,3,1,1,.1,", "4,3,81,21.5,3,1,2,.1,"),
         QUANTITIES.rstrip(",").replace(",", ", "),
