@@ -1,18 +1,24 @@
-"""The lattice over chromaticity: single wavelengths are on its rim."""
+"""The lattice over chromaticity: single wavelengths are on its rim; lights expected at
+its nodes.
+"""
 
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
 from tests.helpers import raises
+from uplift.atlas.resampling import on_grid
+from uplift.atlas.sources import read_atlas
 from uplift.colorimetry import observer
 from uplift.common.errors import OptionError
-from uplift.extras.emission.fit import locus_lattice
+from uplift.extras.emission.fit import locus_lattice, nearest_lights
+from uplift.extras.emission.lamps import known_lamps
 from uplift.extras.emission.lattice import (
     LOCUS_TOLERANCE,
     ChromaticityLattice,
     chromaticity,
 )
+from uplift.extras.emission.prior import fit_lamp_prior, smoothest_lights
 
 
 def test_chromaticity_of_equal_energy():
@@ -55,3 +61,36 @@ def test_all_mixtures_of_wavelengths_lie_within_the_bend(locus):
     uv = chromaticity(xyz[first] + xyz[second]).reshape(-1, 2)
     share = locus[0].polar(uv - D65)[2]
     assert 1 + 1e-4 < share.max() <= 1 + LOCUS_TOLERANCE
+
+
+LAMPS = known_lamps()
+
+
+@pytest.fixture(scope="module")
+def fitted():
+    surfaces = on_grid(read_atlas("macbeth"), observer.grid())
+    return fit_lamp_prior(LAMPS.power, surfaces, RADIOMETRY)
+
+
+def test_left_out_predictions_do_not_know_the_lamp(fitted):
+    """A plain kriging of the others gives the same light, before it is moved to the
+    chromaticity.
+    """
+    prior, left_out = fitted
+    row = LAMPS.names.index("FL11")
+    others = np.arange(len(LAMPS)) != row
+    power = LAMPS.power / (LAMPS.power @ RADIOMETRY @ (1, 15, 3))[:, None]
+    smooth = smoothest_lights(prior.uv, RADIOMETRY)
+    known = prior.uv[others]
+    covariance = prior.kernel(known, known) + prior.kernel.nugget * np.eye(len(known))
+    weights = np.linalg.solve(covariance, prior.kernel(known, prior.uv[[row]])[:, 0])
+    expected = smooth[row] + weights @ (power - smooth)[others]
+    expected = np.maximum(expected, 1e-3 * smooth[row])
+    found = nearest_lights(expected[None], prior.uv[[row]], RADIOMETRY)
+    assert_allclose(found[0], left_out[row], atol=1e-6)
+
+
+def test_deviations_grow_with_the_distance_from_lamps(fitted):
+    prior = fitted[0]
+    near, far = prior.standard_deviation(np.array([prior.uv[0], [0.05, 0.58]]))
+    assert 0 < near < far <= 1

@@ -39,13 +39,13 @@ def test_saunderson_round_trip(n):
     assert measured[-1] == pytest.approx(1)
 
 
-@pytest.mark.parametrize("index", [0.9, np.nan, np.inf])
-def test_invalid_indices_raise(index):
-    with raises(OptionError):
-        Surface.of_index(index)
-
-
 @pytest.mark.parametrize("values", [(1, 0), (0, 1), (-0.1, 0), (np.nan, 0)])
 def test_invalid_surfaces_raise(values):
     with raises(OptionError):
         Surface(*values)
+
+
+@pytest.mark.parametrize("index", [0.9, np.inf])
+def test_invalid_indices_raise(index):
+    with raises(OptionError):
+        Surface.of_index(index)

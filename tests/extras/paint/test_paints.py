@@ -11,9 +11,7 @@ from tests.extras.paint.invented import OIL, WAVELENGTHS, invented
 from tests.helpers import raises
 from uplift.colorimetry.delta_e import lab
 from uplift.common.errors import OptionError
-from uplift.extras.paint.optics import beneath_surface, through_surface
 from uplift.extras.paint.paints import strengths
-from uplift.extras.paint.pigments import Pigment
 
 PARTS = np.array([3.0, 1.0, 0.5, 2.0])
 GROUND = np.linspace(0.2, 0.9, len(WAVELENGTHS))
@@ -73,25 +71,6 @@ def test_strength_is_the_white_that_balances_absorption(paints):
 def test_invalid_parts_raise(paints, parts):
     with raises(OptionError):
         paints.reflectance(parts)
-
-
-def test_jax_has_the_numbers_of_numpy(paints):
-    def values(xp):
-        K = xp.asarray(paints.pigments.absorption)
-        S = xp.asarray(paints.pigments.scattering)
-        pigment = Pigment(K, S)
-        layer = pigment.layer(np.array([0.1, 1.0, 3.0, 50.0])).over(xp.asarray(GROUND))
-        return (
-            pigment.opaque_reflectance(),
-            layer,
-            through_surface(layer, layer, 0.04, 0.6),
-            beneath_surface(layer, 0.04, 0.6),
-            lab(layer[:, :3], np.array([0.95, 1.0, 1.09])),
-        )
-
-    with jax.enable_x64(True):
-        for ours, theirs in zip(values(np), values(jax.numpy), strict=True):
-            assert_allclose(theirs, ours, rtol=1e-12, atol=1e-12)
 
 
 @pytest.mark.parametrize("level", [0.0, 1e-300, (6 / 29) ** 3])

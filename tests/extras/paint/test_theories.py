@@ -51,8 +51,10 @@ def colours(rng):
 
 
 @pytest.fixture(scope="module")
-def patches(paints):
-    return np.array(list(paints.values()))
+def patches(small_cube):
+    """Linear RGB (n, 3) of the ColorChecker's coloured patches."""
+    rgb = small_cube.data.atlas.rgb
+    return rgb[np.ptp(rgb, axis=1) > 0.1 * rgb.max(axis=1)]
 
 
 @pytest.fixture(scope="module")

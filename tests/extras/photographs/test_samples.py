@@ -8,15 +8,9 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 import uplift
 from tests.helpers import raises
-from uplift.colorimetry import observer
-from uplift.colorimetry.delta_e import delta_e_spectra
 from uplift.common.errors import ColourError, OptionError
 from uplift.extras.photographs.samples import TAIL, prepare_samples
-from uplift.lookup.errors_under_lights import evidence
 from uplift.models.brightness import brightness
-
-LIGHTS = ("A", "FL2", "FL11", "LED-B3", "HP1")
-COUNT = 100
 
 
 @pytest.fixture(scope="module")
@@ -68,29 +62,6 @@ def test_the_spread_is_that_of_the_covariance(sampler):
     assert_allclose(spectra.std(axis=0)[visible], expected[visible], rtol=0.1)
     mean = sampler.cube.reflectance(rgb[0])
     assert_allclose(spectra.mean(axis=0)[visible], mean[visible], atol=0.01)
-
-
-def test_samples_spread_as_families_that_were_left_out(sampler):
-    """68 % and 95 % of samples are nearer to the answer than 68 % and 95 % of the
-    materials.
-    """
-    known = evidence(sampler.cube.data)
-    rows = slice(None, None, 6)
-    measured = np.asarray(known.measured, dtype=float)[rows]
-    rgb = np.clip(sampler.cube.data.sensor.rgb(measured), 0, 1)
-    around = np.clip(known.left_out[rows], 0, 1).astype(float)
-    covariance = sampler.metamers.left_out_covariance(known.family)[rows]
-    random = np.random.default_rng(4)
-    at = sampler.cube.wavelengths
-    samples = sampler.draw(around, rgb, covariance, COUNT, random, at)
-    within = []
-    for name in LIGHTS:
-        light = observer.light(name)
-        means = np.broadcast_to(around[:, None], samples.shape)
-        spread = delta_e_spectra(light, samples, means)
-        radii = np.quantile(spread, (0.68, 0.95), axis=1)
-        within.append((delta_e_spectra(light, around, measured) <= radii).mean(axis=1))
-    assert np.mean(within, axis=0) == pytest.approx([0.68, 0.95], abs=0.06)
 
 
 @pytest.mark.parametrize(
