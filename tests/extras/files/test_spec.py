@@ -15,7 +15,6 @@ from uplift.extras.files.spec import (
     SPEC,
     FolderPath,
     Matrix,
-    NotNegative,
     Number,
     Row,
     SpecFolder,
@@ -42,7 +41,6 @@ class Table(SpecModel):
     """A table of all kinds of values."""
 
     max_value: Number = 1.0
-    weight: NotNegative = 1.0
     lamps: tuple[Lamp, ...] = ()
     file: FolderPath | None = None
 
@@ -86,7 +84,6 @@ LAMP = "[[lamps]]\nto-xyz = [[1, 2]]\nnumbers = [1]"
         ("max_value = 3", "max_value: unknown key"),
         ("max-value = 7", "max-value must be negative, got 7"),
         ("max-value = '3'", "max-value must be"),
-        ("weight = -1", "weight must be"),
         ("lamps = [3]", "lamps[0] must be a table, got 3"),
         ("[[lamps]]\nnumbers = [1]", "lamps[0].to-xyz: required key is missing"),
         (LAMP.replace("[1]", "[nan]"), "lamps[0].numbers[0] must be"),
@@ -110,7 +107,7 @@ def test_look_ups_keep_their_code_and_other_errors_get_the_hint(read):
         read(f"{LAMP}\nlight = 'D66'")
     assert caught.value.problem == "lamps[0].light: unknown illuminant 'D66'"
     assert "D65" in caught.value.hint
-    for text, hint in (("max-value = 7", "lower it"), ("weight = -1", "again")):
+    for text, hint in (("max-value = 7", "lower it"), ("max-value = '3'", "again")):
         with raises(PaletteError, "invalid-file") as caught:
             read(text, hint="again")
         assert caught.value.hint == hint

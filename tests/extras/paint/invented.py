@@ -4,7 +4,6 @@ from itertools import product
 
 import numpy as np
 
-from uplift.colorimetry import observer
 from uplift.colorimetry.delta_e import delta_e_spectra
 from uplift.extras.paint.optics import Surface
 from uplift.extras.paint.paint_samples import MeasuredSpectra, PaintSamples
@@ -90,10 +89,7 @@ def measured(paints, shares, noise=0.0, films=(), seed=1):
 
 def mixture_errors(fitted, paints, count=200):
     """ΔE00 (count,) of random opaque mixtures between fitted paints and true ones."""
-    nm = paints.wavelengths
-    light = observer.light(
-        "D65", observer.DEFAULT_OBSERVER, nm[0], nm[-1], nm[1] - nm[0]
-    )
     shares = np.full(len(paints), 0.5)
     parts = np.random.default_rng(6).dirichlet(shares, count)
-    return delta_e_spectra(light, fitted.reflectance(parts), paints.reflectance(parts))
+    pair = (fitted.reflectance(parts), paints.reflectance(parts))
+    return delta_e_spectra(paints.light("D65"), *pair)

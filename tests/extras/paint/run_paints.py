@@ -35,7 +35,7 @@ uniform sampler2D colours;
 out vec4 found;
 void main() {{
     vec4 given = texelFetch(colours, ivec2(gl_FragCoord.xy), 0);
-    float parts[TUBES_PAINTS] = float[TUBES_PAINTS]({parts});
+    float parts[TUBES_PAINTS] = float[TUBES_PAINTS](2., 1., 0., .5);
     float ground[TUBES_SAMPLES], layer[TUBES_SAMPLES], rgb[3];
     for (int at = 0; at < TUBES_SAMPLES; ++at) ground[at] = given.b;
     tubes_layer(parts, given.a, ground, layer);
@@ -49,7 +49,7 @@ StructuredBuffer<float4> colours : register(t1);
 RWStructuredBuffer<float4> found : register(u2);
 [numthreads(64, 1, 1)]
 void main(uint3 id : SV_DispatchThreadID) {{
-    float parts[TUBES_PAINTS] = {{{parts}}};
+    float parts[TUBES_PAINTS] = {{1, 1, 1, 1}};
     float rgb[3];
     parts[0] = colours[id.x].x;
     tubes_mix(parts, rgb);
@@ -63,21 +63,18 @@ def c(path, rows, compiler="c"):
     return run_c(path, HOST, given, compiler).reshape(len(rows), -1)
 
 
-def glsl(path, parts, films):
+def glsl(path, films):
     """Return linear RGB and the fourth reflectance (n, 4) of films (n, 2) of one
     mixture, of a thickness and on a grey ground, by WebGL 2 in Chromium.
     """
-    listed = ", ".join(str(float(part)) for part in parts)
-    code = FRAGMENT.replace("{parts}", listed)
-    return shade(path, code, films[:, [0, 0, 1, 0]])
+    return shade(path, FRAGMENT, films[:, [0, 0, 1, 0]])
 
 
-def compile_hlsl(path, count):
+def compile_hlsl(path):
     """Compile a shader to SPIR-V."""
     need(GLSLANG)
-    listed = ", ".join(["1.0"] * count)
     main = path.with_name("main.hlsl")
-    main.write_text(PIXEL.format(code=path.read_text(), parts=listed))
+    main.write_text(PIXEL.format(code=path.read_text()))
     command = "glslangValidator -D -V -S comp -e main main.hlsl -o main.spv"
     output_of(*command.split(), cwd=path.parent)
     return path.with_name("main.spv")

@@ -17,7 +17,6 @@ from uplift.extras.paint.optics import (
     Layer,
     Surface,
     plate,
-    ramp,
     stack_filters,
 )
 from uplift.extras.paint.overpaint import overpainter
@@ -63,11 +62,6 @@ def test_filters_are_multiplied():
     """9.2.1.2 of the thesis: cyan light through an orange and a grey filter."""
     filters = np.array([[0, 1, 1], [1, 0.5, 0], [0.5, 0.5, 0.5]])
     assert_allclose(stack_filters(filters, [1, 1, 1]), [0, 0.25, 0])
-
-
-def test_ramps_of_proportions():
-    assert_allclose(ramp([1, 4, 1], 5)[:, 1], [0, 2, 4, 2, 0])
-    assert ramp([1], 5).shape == (0, 1)
 
 
 @pytest.mark.parametrize(

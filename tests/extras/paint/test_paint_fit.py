@@ -17,7 +17,6 @@ from tests.extras.paint.invented import (
     plan,
 )
 from tests.helpers import raises, warns
-from uplift.colorimetry import observer
 from uplift.common.errors import OptionError
 from uplift.extras.paint import paint_fit
 from uplift.extras.paint.optics import Surface
@@ -59,7 +58,6 @@ def test_noise_is_within_the_stated_errors(three_paints, fitted):
     errors = np.abs(log_errors(fitted.paints, three_paints))
     within = errors < 2 * np.stack([stated.absorption, stated.scattering])
     assert within.mean() > 0.85
-    assert np.median(stated.scattering) < 0.1
 
 
 def test_the_order_of_samples_and_paints_does_not_matter(three_paints, opaque_fit):
@@ -87,10 +85,9 @@ def test_one_mass_tone_leaves_the_scattering_to_the_rule(three_paints):
 
 
 def test_colours_alone_predict_mixtures(three_paints, opaque_fit):
-    sensor = observer.sensor(wavelengths=(400, 700, 20))
-    rgb = np.clip(sensor.rgb(opaque_fit.samples.measured.values), 0, 1)
-    samples = replace(opaque_fit.samples, measured=MeasuredColours(rgb))
-    found = fit_paints(samples)
+    samples = opaque_fit.samples
+    colours = MeasuredColours(samples.measured.rgb(three_paints.sensor))
+    found = fit_paints(replace(samples, measured=colours))
     assert found.delta_e.max() < 1
     assert mixture_errors(found.paints, three_paints).mean() < 1.5
 

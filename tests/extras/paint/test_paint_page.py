@@ -12,13 +12,13 @@ from tests.browsing import WIDTHS, check_page, open_page, overflow, shared_tab
 from tests.extras.paint.invented import invented
 from tests.helpers import output_of
 from tests.parts import NODE, need
-from uplift.colorimetry import observer
 from uplift.colorimetry.delta_e import delta_e_rgb
 from uplift.extras.colour.srgb import decode, hex_codes
 from uplift.extras.paint.paint_page import page
 from uplift.extras.paint.recipes import PaintTarget, match
 
-SENSOR = observer.sensor(wavelengths=(400, 700, 10))
+PAINTS = invented(np.arange(400.0, 701, 10))
+SENSOR = PAINTS.sensor
 DIFFERENCES = """
 import { readFileSync } from "node:fs";
 const code = process.argv.slice(2).map(path => readFileSync(path, "utf8")).join("");
@@ -29,16 +29,11 @@ console.log(JSON.stringify(errors));
 """
 
 
-@pytest.fixture(scope="module")
-def paints():
-    return invented(np.arange(400.0, 701, 10))
-
-
 @pytest.fixture
-def opened(paints, tmp_path):
+def opened(tmp_path):
     """A tab that shows the page of all paints on a desk."""
     tab = shared_tab()
-    open_page(tab, page(paints), tmp_path)
+    open_page(tab, page(PAINTS), tmp_path)
     return tab
 
 
@@ -60,29 +55,29 @@ def put(tab, name, value, event="input"):
 
 
 def recipes(tab):
-    """Parts by paint and the stated ΔE00 of each recipe."""
+    """Parts (n, P) and the stated ΔE00 (n,) of recipes."""
     items = tab.evaluate(
         "[...document.querySelectorAll('#recipes button')].map(item => "
         "[...item.querySelectorAll('span')].map(span => span.textContent))"
     )
-    found = []
-    for recipe, error in items:
-        pairs = [part.split(" ", 1) for part in recipe.split(" + ")]
-        parts = {name: int(amount) for amount, name in pairs}
-        found.append((parts, float(error.removeprefix("ΔE "))))
-    return found
+    parts = np.zeros((len(items), len(PAINTS)))
+    for row, (recipe, _) in enumerate(items):
+        for part in recipe.split(" + "):
+            amount, name = part.split(" ", 1)
+            parts[row, PAINTS.index(name)] = int(amount)
+    return parts, np.array([float(error.removeprefix("ΔE ")) for _, error in items])
 
 
-def test_the_page_is_complete_narrow_and_accessible(paints, tmp_path):
-    check_page(page(paints), tmp_path)
+def test_the_page_is_complete_narrow_and_accessible(tmp_path):
+    check_page(page(PAINTS), tmp_path)
 
 
-def test_mixtures_have_the_colours_of_python(paints, opened):
-    assert text(opened, "code") == code_of(paints.reflectance([4, 2, 1, 0]))
+def test_mixtures_have_the_colours_of_python(opened):
+    assert text(opened, "code") == code_of(PAINTS.reflectance([4, 2, 1, 0]))
     assert text(opened, "recipe") == "4 white + 2 yellow + 1 red"
     for paint, parts in enumerate([0, 6, 0, 2]):
         put(opened, f"parts-{paint}", parts)
-    assert text(opened, "code") == code_of(paints.reflectance([0, 6, 0, 2]))
+    assert text(opened, "code") == code_of(PAINTS.reflectance([0, 6, 0, 2]))
     opened.evaluate("document.getElementById('clear').click(); 0")
     assert text(opened, "recipe") == "1 white"
     assert opened.errors == []
@@ -97,19 +92,16 @@ def test_films_hide_their_ground_from_thin_to_thick(opened):
 
 
 @pytest.mark.parametrize("parts", [[3, 0, 0, 1], [4, 2, 1, 0]])
-def test_recipes_are_as_good_as_those_of_python(paints, opened, parts):
-    reflectance = paints.reflectance(parts)
+def test_recipes_are_as_good_as_those_of_python(opened, parts):
+    reflectance = PAINTS.reflectance(parts)
     code = code_of(reflectance)
     put(opened, "target", code)
-    found = recipes(opened)
-    errors = [error for _, error in found]
-    assert errors == sorted(errors)
-    light = observer.light("D65", observer.DEFAULT_OBSERVER, 400, 700, 10)
-    best = match(PaintTarget(reflectance, (light,)), paints, steps=40)[0]
-    assert errors[0] < best.error + 1
+    found, errors = recipes(opened)
+    assert (np.diff(errors) >= 0).all()
+    target = PaintTarget(reflectance, (PAINTS.light("D65"),))
+    assert errors[0] < match(target, PAINTS, steps=40)[0].error + 1
     wanted = decode(np.array(list(bytes.fromhex(code[1:]))) / 255)
-    amounts = [[mixture.get(name, 0) for name in paints.names] for mixture, _ in found]
-    mixed = paints.reflectance(amounts)
+    mixed = PAINTS.reflectance(found)
     assert_allclose(errors, delta_e_rgb(SENSOR, SENSOR.rgb(mixed), wanted), atol=0.02)
     opened.evaluate("document.querySelector('#recipes button').click(); 0")
     assert text(opened, "code") == code_of(mixed[0])
@@ -118,15 +110,15 @@ def test_recipes_are_as_good_as_those_of_python(paints, opened, parts):
 def test_colours_out_of_reach_are_stated(opened):
     put(opened, "target", "#00ff00")
     put(opened, "count", 1, "change")
-    found = recipes(opened)
-    assert all(len(mixture) == 1 for mixture, _ in found)
-    assert found[0][1] > 5
-    assert f"{found[0][1]:.1f}" in text(opened, "reach")
+    parts, errors = recipes(opened)
+    assert ((parts > 0).sum(axis=1) == 1).all()
+    assert errors[0] > 5
+    assert f"{errors[0]:.1f}" in text(opened, "reach")
 
 
-def test_one_paint_and_names_of_markup(paints, tmp_path):
+def test_one_paint_and_names_of_markup(tmp_path):
     name = '<b>&"</script><script>throw 1</script>' + "very long " * 15
-    odd = replace(paints.select(["blue"]), names=(name.strip(),))
+    odd = replace(PAINTS.select(["blue"]), names=(name.strip(),))
     tab = shared_tab()
     open_page(tab, page(odd), tmp_path, WIDTHS[0])
     assert overflow(tab) <= 0

@@ -9,7 +9,6 @@ from numpy.testing import assert_allclose
 
 from tests.extras.paint import run_paints
 from tests.extras.paint.invented import invented
-from uplift.colorimetry import observer
 from uplift.colorimetry.delta_e import delta_e_rgb
 from uplift.extras.colour.srgb import decode, encode
 from uplift.extras.paint.paint_exports import (
@@ -70,7 +69,7 @@ def test_programs_mix_as_python(samples, folder, rows, name):
 def test_few_wavelengths_have_the_colours_of_all(paints, samples):
     """The stated errors are those of mixtures that nothing was fitted to."""
     parts = np.random.default_rng(77).dirichlet(np.full(4, 0.5), 300)
-    sensor = observer.sensor(wavelengths=(400, 700, 20))
+    sensor = paints.sensor
     exact = np.clip(sensor.rgb(paints.reflectance(parts)), 0, 1)
     near = np.clip(samples.paints.reflectance(parts) @ samples.weights.T, 0, 1)
     errors = delta_e_rgb(sensor, exact, near)
@@ -80,17 +79,17 @@ def test_few_wavelengths_have_the_colours_of_all(paints, samples):
 
 
 def test_hlsl_compiles(samples, folder):
-    assert run_paints.compile_hlsl(folder / "tubes.hlsl", 4).stat().st_size > 1000
+    assert run_paints.compile_hlsl(folder / "tubes.hlsl").stat().st_size > 1000
 
 
 def test_the_shader_mixes_as_python(samples, folder, rng):
-    parts = [2.0, 1.0, 0.0, 0.5]
     films = np.column_stack([10 ** rng.uniform(-3, 3, 60), rng.uniform(0.05, 1, 60)])
     films = films.astype(np.float32).astype(float)
-    found = run_paints.glsl(folder / "tubes.glsl", parts, films)
-    layers = [samples.paints.reflectance(parts, *film) for film in films]
-    assert_allclose(found[:, :3], np.array(layers) @ samples.weights.T, atol=1e-4)
-    assert_allclose(found[:, 3], np.array(layers)[:, 3], atol=1e-4)
+    found = run_paints.glsl(folder / "tubes.glsl", films)
+    parts = [2.0, 1.0, 0.0, 0.5]
+    layers = np.array([samples.paints.reflectance(parts, *film) for film in films])
+    assert_allclose(found[:, :3], layers @ samples.weights.T, atol=1e-4)
+    assert_allclose(found[:, 3], layers[:, 3], atol=1e-4)
 
 
 def test_names_cannot_end_a_comment(paints, tmp_path):
@@ -108,7 +107,6 @@ def test_a_table_of_two_paints_as_opencolorio_reads_it(tmp_path):
     """At its nodes: share, root of the thickness and grey ground."""
     two = invented(np.arange(400.0, 701, 10), ["yellow", "blue"])
     line = export_lut(two, tmp_path / "two.cube", "cube", force=False)
-    sensor = observer.sensor(wavelengths=(400, 700, 10))
     thickest = max(hiding_thickness(two, row) for row in np.eye(2))
     assert f"{thickest:.3g}" in line
     transform = PyOpenColorIO.FileTransform(str(tmp_path / "two.cube"))
@@ -119,11 +117,11 @@ def test_a_table_of_two_paints_as_opencolorio_reads_it(tmp_path):
         two.reflectance([1 - share, share], thickest * depth**2, decode(code))
         for share, depth, code in NODES
     ]
-    assert_allclose(pixels, encode(sensor.rgb(np.array(films))), atol=1e-5)
+    assert_allclose(pixels, encode(two.sensor.rgb(np.array(films))), atol=1e-5)
 
 
 def test_layers_hide_at_their_thickness(paints):
-    sensor = observer.sensor(wavelengths=(400, 700, 20))
+    sensor = paints.sensor
     row = np.eye(4)[3]
     thickness = hiding_thickness(paints, row)
     errors = []

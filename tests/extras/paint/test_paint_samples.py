@@ -57,7 +57,6 @@ def test_columns_are_paints_by_name(read):
     assert samples.names == ("a", "b")
     assert samples.paints == ("white", "blue")
     assert_allclose(samples.shares, [[1, 0], [0.25, 0.75]])
-    assert samples.is_opaque.all()
     assert_array_equal(samples.wavelengths, NM)
     assert_allclose(samples.measured.values, [[0.8] * 16, [0.2] * 16])
 
@@ -197,7 +196,6 @@ def test_fine_and_coarse_wavelengths_are_sampled_each_10_nm(read, nm):
 
 INVALID = {
     "no paints": (f"name,{cells(*NM)}\na,{spectrum(0.5)}\n", "no-paints", 0),
-    "empty": ("", "atlas", 0),
     "two columns of a name": (TWO.replace("blue", "white"), "atlas", 0),
     "two samples of a name": (TWO.replace("\nb,", "\na,"), "atlas", 3),
     "infinite parts": (TWO.replace(",3,", ",inf,"), "invalid-parts", 3),
@@ -212,7 +210,6 @@ INVALID = {
     "film without thickness": (FILMS.replace("1,1,black", "1,,black"), "atlas", 4),
     "thickness 0": (FILMS.replace("0.25", "0"), "atlas", 3),
     "film without ground": (FILMS.replace("0.25,card", "0.25,"), "atlas", 3),
-    "ground with paint": (FILMS.replace("0.25,card", "0.25,thick"), "atlas", 3),
     "bad code": (COLOURS.replace("#0000ff", "#0000f"), "atlas", 3),
     "missing reflectance": (TWO.replace("b,1,3,0.2,", "b,1,3,,"), "missing-value", 3),
 }

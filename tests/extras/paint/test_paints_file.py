@@ -75,7 +75,6 @@ MALFORMED = {
     "another format": TEXT.replace("paints 1", "paints 2"),
     "no paints": TEXT[: TEXT.index("[[paints]]")],
     "short row": TEXT.replace("absorption = [0.5, ", "absorption = ["),
-    "short errors": TEXT + f"absorption-errors = {ROW[:-1]}\n",
     "huge": TEXT.replace("absorption = [0.5", "absorption = [1e13"),
     "negative": TEXT.replace("scattering = [0.5", "scattering = [-0.1"),
     "neither absorbs nor scatters": TEXT.replace("[0.5,", "[0.0,"),

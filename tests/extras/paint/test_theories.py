@@ -51,19 +51,15 @@ def colours(rng):
 
 
 @pytest.fixture(scope="module")
-def patches(small_cube):
-    """Linear RGB (n, 3) of the ColorChecker's coloured patches."""
-    rgb = small_cube.data.atlas.rgb
-    return rgb[np.ptp(rgb, axis=1) > 0.1 * rgb.max(axis=1)]
-
-
-@pytest.fixture(scope="module")
 def small_models(small_cube):
     return mixers(small_cube)
 
 
-def test_all_models_have_criteria(small_models):
-    assert set(small_models) == set(OBEYED)
+@pytest.fixture(scope="module")
+def patches(small_cube):
+    """Linear RGB (n, 3) of the ColorChecker's coloured patches."""
+    rgb = small_cube.data.atlas.rgb
+    return rgb[np.ptp(rgb, axis=1) > 0.1 * rgb.max(axis=1)]
 
 
 @pytest.mark.parametrize("name", OBEYED)
