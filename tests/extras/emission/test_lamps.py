@@ -120,6 +120,7 @@ def test_names_of_illuminants_are_not_taken(write, name):
     [
         ("words.spd", "a lamp\nof words\n", "not-an-atlas"),
         ("short.csv", "450,1\n500,2\n600,1\n", "atlas"),
+        ("dark.csv", "400,0\n700,0\n", "atlas"),
         ("filter.csv", "nm;Transmittance\n400;0,1\n500;0,2\n700;0,3\n", "not-a-lamp"),
         ("macbeth.txt", MACBETH.read_text("utf-8"), "not-a-lamp"),
         ("other.json", "[]", "atlas"),

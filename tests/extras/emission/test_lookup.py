@@ -93,13 +93,6 @@ def test_colours_are_exact_and_powers_are_not_negative():
     )
 
 
-@pytest.mark.parametrize("scale", [0, 1e-20, 1e20])
-def test_light_scales(scale):
-    expected = scale * TABLE.spectrum([0.9, 0.5, 0.2])
-    found = TABLE.spectrum([0.9 * scale, 0.5 * scale, 0.2 * scale])
-    assert_allclose(found, expected, rtol=1e-12)
-
-
 def test_lamps_are_exact_at_their_colours():
     entries = TABLE.data.entries
     found = TABLE.spectrum_of_xyz(entries.spectra @ RADIOMETRY)

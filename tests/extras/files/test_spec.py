@@ -92,6 +92,8 @@ LAMP = "[[lamps]]\nto-xyz = [[1, 2]]\nnumbers = [1]"
             "lamps[0].to-xyz must be 1 × 2 numbers, got 1 × 3",
         ),
         ("file = '/etc/passwd'", "file must lie in the folder"),
+        (LAMP.replace("2]]", "2], [3]]"), "lamps[0].to-xyz must have rows"),
+        (r'file = "a\u0000"', "file must be a path"),
         ("file = 'a/../../b'", "file must lie in the folder"),
     ],
 )

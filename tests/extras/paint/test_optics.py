@@ -43,9 +43,3 @@ def test_saunderson_round_trip(n):
 def test_invalid_surfaces_raise(values):
     with raises(OptionError):
         Surface(*values)
-
-
-@pytest.mark.parametrize("index", [0.9, np.inf])
-def test_invalid_indices_raise(index):
-    with raises(OptionError):
-        Surface.of_index(index)

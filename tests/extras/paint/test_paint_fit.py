@@ -41,15 +41,13 @@ def log_errors(fitted, paints):
 def test_exact_films_determine_the_paints_and_their_surface(three_paints):
     """Also the unit of thickness, which opaque samples do not have."""
     samples = measured(three_paints, plan(three_paints), films=FILMS)
-    reported = []
-    fitted = fit_paints(samples, progress=reported.append)
+    fitted = fit_paints(samples)
     assert np.abs(log_errors(fitted.paints, three_paints)).max() < 0.03
     surface = fitted.paints.surface
     assert surface.outside == pytest.approx(three_paints.surface.outside, abs=1e-3)
     assert surface.inside == pytest.approx(three_paints.surface.inside, abs=5e-3)
     assert mixture_errors(fitted.paints, three_paints).mean() < 0.03
     assert fitted.delta_e.max() < 0.1
-    assert {progress.stage for progress in reported} == {"paints"}
 
 
 def test_noise_is_within_the_stated_errors(three_paints, fitted):

@@ -209,6 +209,7 @@ INVALID = {
     "no part": (TWO.replace("1,,", ",,").replace("1,3,", ",,"), "no-paints", 0),
     "film without thickness": (FILMS.replace("1,1,black", "1,,black"), "atlas", 4),
     "thickness 0": (FILMS.replace("0.25", "0"), "atlas", 3),
+    "unknown ground": (FILMS.replace("0.25,card", "0.25,grey"), "atlas", 3),
     "film without ground": (FILMS.replace("0.25,card", "0.25,"), "atlas", 3),
     "bad code": (COLOURS.replace("#0000ff", "#0000f"), "atlas", 3),
     "missing reflectance": (TWO.replace("b,1,3,0.2,", "b,1,3,,"), "missing-value", 3),

@@ -29,11 +29,6 @@ def test_a_film_is_a_layer_beneath_the_surface(paints, thickness):
     assert_allclose(paints.reflectance(PARTS, thickness, GROUND), expected)
 
 
-def test_thick_films_are_opaque(paints):
-    thick = paints.reflectance(PARTS, 1e6, GROUND)
-    assert_allclose(paints.reflectance(PARTS), thick, rtol=1e-9)
-
-
 def test_a_selection_mixes_as_the_others_left_out(paints):
     few = replace(paints, prices=(1.0, 2.0, 3.0, 4.0)).select(["blue", "white"])
     assert few.names == ("blue", "white")

@@ -194,10 +194,12 @@ def test_bad_sets_of_photographs(tungsten, count, noise):
         prepare(tungsten.cube, tungsten.further * count, noise)
 
 
-@pytest.mark.parametrize("rgb", [[0.1, 0.2], [1.1, 0.2, 0.3]])
-def test_bad_colours(tungsten, rgb):
-    with raises(ColourError):
-        tungsten.reflectance(rgb, [0.1, 0.2, 0.3])
+@pytest.mark.parametrize(
+    ("rgb", "others"), [([1.1, 0.2, 0.3], [0.1, 0.2, 0.3]), ([0.1, 0.2, 0.3], [0.1])]
+)
+def test_bad_colours(tungsten, rgb, others):
+    with raises((ColourError, OptionError)):
+        tungsten.reflectance(rgb, others)
 
 
 def test_cubes_without_materials_are_refused(tungsten):

@@ -1,5 +1,7 @@
 """Spectra of one colour: they have it, and spread as materials do."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -10,6 +12,7 @@ import uplift
 from tests.helpers import raises
 from uplift.common.errors import ColourError, OptionError
 from uplift.extras.photographs.samples import TAIL, prepare_samples
+from uplift.lookup.errors_under_lights import evidence
 from uplift.models.brightness import brightness
 
 
@@ -62,6 +65,15 @@ def test_the_spread_is_that_of_the_covariance(sampler):
     assert_allclose(spectra.std(axis=0)[visible], expected[visible], rtol=0.1)
     mean = sampler.cube.reflectance(rgb[0])
     assert_allclose(spectra.mean(axis=0)[visible], mean[visible], atol=0.01)
+
+
+def test_left_out_covariances_do_not_know_their_family(sampler):
+    metamers = sampler.metamers
+    family = evidence(sampler.cube.data).family
+    rows = family == family[0]
+    expected = metamers.left_out_covariance(family)[rows]
+    others = replace(metamers, scores=metamers.scores * ~rows[:, None])
+    assert_allclose(others.left_out_covariance(family)[rows], expected)
 
 
 @pytest.mark.parametrize(
