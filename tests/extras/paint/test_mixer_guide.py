@@ -58,9 +58,8 @@ def test_glsl(folder):
 def test_javascript(folder):
     need(NODE)
     (folder / "main.mjs").write_text(code("javascript"))
-    green, pink = output_of("node", folder / "main.mjs").splitlines()
+    green, _ = output_of("node", folder / "main.mjs").splitlines()
     assert as_hex(green) == GREEN
-    assert pink.startswith("[")
 
 
 def test_python():

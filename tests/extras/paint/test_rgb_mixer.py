@@ -12,7 +12,7 @@ from uplift.colorimetry.delta_e import delta_e_rgb
 from uplift.common.errors import ColourError, OptionError
 from uplift.extras.colour.srgb import decode
 from uplift.extras.paint.pigments import dispersive, from_opaque
-from uplift.extras.paint.rgb_mixer import make_mixer
+from uplift.extras.paint.rgb_mixer import SIZE, make_mixer
 from uplift.lookup.cube import Cube
 
 
@@ -54,6 +54,7 @@ def test_many_colours_mix_as_two_and_latents_add(mixer, pairs):
     mixed = mixer.mix(pairs[:, 0], pairs[:, 1], 0.25)
     assert_allclose(mixer.mix_all(pairs, [21, 7]), mixed, atol=1e-12)
     latents = mixer.latent(pairs)
+    assert latents.shape[-1] == SIZE
     added = 0.75 * latents[:, 0] + 0.25 * latents[:, 1]
     assert_allclose(mixer.colour(added), mixed, atol=1e-12)
 
