@@ -9,7 +9,6 @@ from numpy.testing import assert_allclose
 from tests.extras.texture.conftest import planes, read_channels, write_exr
 from tests.helpers import raises, warns
 from uplift.common.errors import OptionError
-from uplift.extras.images.counts import Counts
 from uplift.extras.paint.coats import DARKEST, Dyes, Pigments, Plates, dye_absorption
 from uplift.extras.paint.duntley import DuntleyPaints
 from uplift.extras.paint.optics import (
@@ -164,7 +163,7 @@ def test_painted_colours_are_those_of_the_coated_spectra(small_cube, painted):
     red = small_cube.reflectance(atlas.rgb[atlas.names.index("red")])
     glaze = Pigments(red[None], SQUARE_ROOT).coat([1], 0.5, OIL)
     image, found, result = painted(glaze)
-    assert (result.counts, result.warnings) == (Counts(30), ())
+    assert not result.warnings
     expected = small_cube.data.sensor.rgb(glaze.over(small_cube.reflectance(image)))
     assert_allclose(found, expected, atol=2e-6)
 
@@ -173,8 +172,6 @@ def test_pixels_outside_are_mapped_before_and_after_with_warnings(small_cube, pa
     """A thick dye is saturated enough to leave the gamut."""
     dye = Dyes(small_cube.reflectance([[0.9, 0.1, 0.02]])).coat([1], 3.0)
     _, found, result = painted(dye, brighter=0.5)
-    assert 0 < result.counts["pixels-out-of-gamut"] < 30
-    assert result.counts["painted-pixels-out-of-gamut"] > 0
     codes = [warning.code for warning in result.warnings]
     assert codes == ["pixels-out-of-gamut", "painted-pixels-out-of-gamut"]
     assert ((found >= 0) & (found <= 1)).all()
