@@ -4,12 +4,9 @@ import json
 
 import numpy as np
 import pytest
-from uplift_cli.also import is_file, parse_further, parse_noise
 
 import uplift
 from tests.extras.texture.conftest import channels, planes, write_exr
-from tests.helpers import raises
-from uplift.common.errors import OptionError
 from uplift.extras.photographs.answers import prepare
 from uplift.extras.photographs.photograph import photograph
 from uplift.samples import sample_path
@@ -92,34 +89,3 @@ def test_several_pictures_of_several_lights(run, home):
         "day.1.exr",
         "day.2.exr",
     ]
-
-
-@pytest.mark.parametrize(
-    ("line", "code"),
-    [
-        ("query 0.2 0.2 0.2 --also D65:0.2,0.2,0.2", "option"),
-        ("query 0.2 0.2 0.2 --also A:0.2,0.2,0.2 --also A:0.2,0.2,0.2", "option"),
-        ("query 0.2 0.2 0.2 --also none:0.2,0.2,0.2", "unknown-name"),
-        ("query 0.2 0.2 0.2 --also 0.2,0.2,0.2", "option"),
-        ("query 0.2 0.2 0.2 #888 --also A:#888", "option"),
-        ("query 0.2 0.2 0.2 --also A:blue", "colour"),
-        ("query 0.2 0.2 0.2 --also A:0.3,0.2", "colour"),
-        ("query 0.2 0.2 0.2 --also A:nan,0.2,0.1", "colour"),
-        ("query 0.2 0.2 0.2 --also A:#888 --noise 2", "option"),
-        ("texture wood.png --also A:none.exr -o x.exr", "file-not-found"),
-        ("texture wood.png wood.png --also A:wood.png -o out", "frames-differ"),
-        ("texture wood.png --also A:wood.png --exposure 1 --exposure 2 -o x", "option"),
-    ],
-)
-def test_bad_input(refuse, home, wood, line, code):
-    (home / "wood.png").write_bytes(wood.read_bytes())
-    assert refuse(line).code == code
-
-
-def test_lights_may_hold_colons(home):
-    (home / "a.exr").write_text("")
-    with raises(OptionError):
-        parse_further("A", "FILE", is_file)
-    assert parse_further("3200K:a.exr", "FILE", is_file).text == "a.exr"
-    assert parse_noise("0.5%") == (0.005, 0.0)
-    assert parse_noise("0.01,0.002") == (0.01, 0.002)

@@ -92,14 +92,6 @@ def test_conversion_round_trip(run, refuse, home):
     run("atlas -o out.csv --force", MACBETH)
 
 
-def test_invalid_input_is_an_error(refuse, misuse):
-    error = refuse("atlas none.txt")
-    assert (error.code, error.where) == ("file-not-found", "none.txt")
-    assert "'macbeth'" in refuse("atlas macbet.txt").hint
-    assert refuse("atlas --space sRGBB", MACBETH).code == "unknown-name"
-    assert "-o" in misuse("atlas -o out.csv")
-
-
 def test_shipped_atlases_are_listed_without_a_file(run, ask):
     atlases = ask("atlas")["atlases"]
     assert [atlas["name"] for atlas in atlases] == sorted(

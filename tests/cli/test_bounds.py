@@ -77,13 +77,6 @@ def test_table_plot_and_page(run, home):
     assert "Looks of " in (home / "page.html").read_text("utf-8")
 
 
-def test_bad_input_is_refused(refuse, misuse, home):
-    assert refuse("lab bounds --xyz 1 0.1 0.02").code == "colour-unrealisable"
-    assert "one colour" in misuse("lab bounds - --html p.html", input=COLOURS)
-    (home / "look.html").write_text("mine")
-    assert refuse("lab bounds #8a2a20 --html look.html").code == "file-exists"
-
-
 def test_a_further_colour_cuts_the_bounds(run, ask, cubes, home):
     colour = f"lab bounds #8a2a20 --cube {cubes}/moments-16-macbeth.uplift --light FL11"
     found = ask(f"{colour} --also A:#9a3020")
@@ -108,12 +101,3 @@ def test_a_further_colour_cuts_the_bounds(run, ask, cubes, home):
     assert before.split()[:2] == ["FL11", "D65"]
     assert after.split()[:2] == ["D65,", "A"]
     assert matplotlib.image.imread(home / "cut.png").shape[2] == 4
-
-
-def test_further_colours_that_do_not_fit_are_refused(refuse, misuse, home):
-    colour = "lab bounds #8a2a20 --light FL11 --also"
-    assert refuse(f"{colour} A:#a03020").code == "colour-unrealisable"
-    assert refuse("lab bounds 1.2 0.1 0.1 --also A:#9a3020").code == "rgb-out-of-gamut"
-    assert "one colour" in misuse("lab bounds - --also A:#9a3020", input=COLOURS)
-    for words in ("--format csv", "--html p.html"):
-        assert "--also" in misuse(f"{colour} A:#9a3020 {words}")

@@ -146,9 +146,3 @@ def test_looks_are_built_summarised_and_shown(run, home):
     )
     assert line.split()[2:] == ["HP1", "#70392a", "(ΔE00", "0.00)"]
     run("check looks.uplift")
-
-
-@pytest.mark.parametrize("name", ["cube.png", "relit.cube", "cube.json"])
-def test_a_cube_has_no_suffix_of_other_files(refuse, home, name):
-    assert refuse(f"build --dim 3 -o {name}").code == "output"
-    assert not (home / name).exists()

@@ -131,7 +131,3 @@ def test_recommendations(quick, run, refuse):
     )
     result = run("chart --recommend --tolerance 1 --light FL11 --atlas-materials")
     assert "--atlas FILE" in result.stdout
-
-
-def test_requirements_need_recommend(misuse):
-    assert "--recommend" in misuse("chart --time-ns 100")

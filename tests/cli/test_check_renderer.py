@@ -1,7 +1,5 @@
 """``uplift check --kit`` and ``--renderer``."""
 
-import pytest
-
 from benchmarks.conformance import CUBE, KIT
 from uplift.extras.report.conformance_kit import kit_names
 
@@ -42,30 +40,3 @@ def test_a_plot_is_drawn_and_replaces_no_input(run, refuse, home):
     (home / "b.png").write_bytes(picture.read_bytes())
     words = "check --force --plot b.png --renderer b.png"
     assert refuse(words, CUBE).code == "output-is-input"
-
-
-def test_files_of_other_kinds_are_refused(refuse, home):
-    assert refuse("check --renderer none.exr", CUBE).where == "none.exr"
-    assert refuse("check --renderer none.csv", CUBE).code == "file-not-found"
-    (home / "a.exr").write_text("no picture")
-    assert refuse("check --renderer a.exr", CUBE).where == "a.exr"
-    assert refuse("check --renderer a.exr none.uplift").code == "file-not-found"
-
-
-@pytest.mark.parametrize(
-    "words",
-    [
-        "check",
-        "check --light A cube.uplift",
-        "check --force cube.uplift",
-        "check --plot a.png cube.uplift",
-        "check --kit kit --plot a.png",
-        "check --kit kit --renderer out.exr",
-        "check --kit kit --light A",
-        "check --renderer out.exr --update",
-        "check --renderer out.exr a.uplift b.uplift",
-    ],
-)
-def test_options_that_do_not_go_together(misuse, home, words):
-    assert misuse(words)
-    assert not any(home.iterdir())

@@ -37,17 +37,3 @@ def test_json_and_page(run, cubes, home):
     assert {row["light"] for row in figures["differences"]} == {"A"}
     assert len(figures["entries_removed"]) == 24
     assert (home / "page.html").read_text("utf-8").startswith("<!DOCTYPE html>")
-
-
-@pytest.mark.parametrize(
-    ("options", "code"),
-    [
-        (("--output", "page.png"), "output"),
-        (("--tolerance", "-1"), "option"),
-        (("--light", "no lamp"), "unknown-name"),
-        (("missing.png",), "file-not-found"),
-    ],
-)
-def test_bad_input(run, cubes, options, code):
-    result = run("lab diff", *cubes, *options, "--format", "json", code=2)
-    assert json.loads(result.stderr)["error"]["code"] == code

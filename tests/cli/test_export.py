@@ -84,19 +84,6 @@ def test_format_follows_the_suffix_of_out(run, home, cube, monkeypatch):
     assert np.load(home / "ANY.NPZ")["nodes"].shape == (8,)
 
 
-@pytest.mark.parametrize(
-    ("arguments", "option"),
-    [
-        ("", "--format"),
-        ("-o cube.h --res 8", "--res"),
-        ("-o cube.npz --mode moments", "--mode"),
-    ],
-)
-def test_wrong_usage(misuse, home, cube, arguments, option):
-    assert option in misuse(f"export {cube} {arguments}")
-    assert os.listdir(home) == [cube]
-
-
 def test_what_reads_cube_files(run, refuse, misuse, home, cube):
     assert run("export --runtime uplift.h").stdout.startswith("uplift.h: ")
     assert run("export --runtime uplift.js").stdout.startswith("uplift.js: ")

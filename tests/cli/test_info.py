@@ -5,7 +5,6 @@ import shlex
 from uplift_cli.commands.build import command as build
 
 import uplift
-from tests.cube.cube_files import forge
 from uplift.cube.file import digest
 
 
@@ -44,28 +43,6 @@ def test_options_are_those_of_the_command_line(run, cubes, monkeypatch):
         )
 
 
-def test_keys_of_options_are_quoted(run, home, cubes, monkeypatch):
-    monkeypatch.setenv("COLUMNS", "2000")
-    data = uplift.load(cubes / "moments-8.uplift").data
-
-    def name(_, metadata):
-        metadata["provenance"]["options"]["a; $(id)"] = 1
-
-    shown = run("info", forge(data, home / "forged.uplift", name)).stdout
-    assert "'--a; $(id)' 1" in shown
-
-
 def test_default_is_the_packaged_cube(run, ask):
     assert ask("info")["digest"] == digest(uplift.load().data)
     assert "packaged cube" in run("info").stdout
-
-
-def test_invalid_files_are_errors(refuse, home, repository):
-    error = refuse("info none.uplift")
-    assert (error.code, error.where) == ("file-not-found", "none.uplift")
-    assert refuse("info", home).code == "file-unreadable"
-    assert refuse("info", repository / "README.md").code == "not-a-cube"
-    (home / "cut.uplift").write_bytes(
-        (repository / "cubes" / "sigmoid-8.uplift").read_bytes()[:-1]
-    )
-    assert refuse("info cut.uplift").code == "not-a-cube"

@@ -85,38 +85,27 @@ def test_a_lamp_of_several_and_answers_under_it(ask, files):
     assert lights["lamp"]["xyz"] != lights["A"]["xyz"]
 
 
-def test_channels_have_the_name_of_the_lamp(run, home, files):
-    run(
-        "texture wood.png -o x.exr --cube cube.uplift --errors lamp.spd",
-    )
+def test_a_texture_names_its_lamp_and_a_changed_lamp_is_another_texture(
+    run, refuse, home, files
+):
+    words = "texture wood.png -o x.exr --cube cube.uplift --errors lamp.spd --resume"
+    run(words)
     with OpenEXR.File(str(home / "x.exr"), separate_channels=True) as file:
         assert "error.lamp" in file.channels()
         settings = json.loads(file.header()["uplift.texture"])
     assert settings["lamps"][0]["name"] == "lamp"
-
-
-def test_a_changed_lamp_is_another_texture(run, refuse, home, files):
-    words = "texture wood.png -o x.exr --cube cube.uplift --errors lamp.spd --resume"
-    run(words)
     run(words)
     (home / "lamp.spd").write_text(LAMP.replace("780\t5", "780\t4"))
     assert refuse(words).code == "texture-differs"
 
 
-def test_a_cube_is_not_built_under_a_lamp(refuse, files):
-    assert refuse("build --dim 3 --illuminant lamp.spd").code == "option"
-
-
 def test_two_lights_of_one_name(refuse, home, files):
     (home / "folder" / "lamp.spd").write_text(LAMP.replace("780\t5", "780\t4"))
     for line in COMMANDS.strip().splitlines():
-        if "export" in line:
-            continue
-        option = "--also" if "--also" in line else "--light"
-        if option in line:
+        if "--light" in line and "export" not in line:
             words = line.replace("{}", "lamp.spd", 1).replace("{}", "A").split()
-            other = f"folder/lamp.spd{':#997788' * (option == '--also')}"
-            assert refuse(*words, option, other).code == "option", line
+            error = refuse(*words, "--light", "folder/lamp.spd")
+            assert error.code == "option", line
 
 
 @pytest.mark.parametrize(
@@ -151,7 +140,7 @@ def test_passes_know_a_lamp_by_its_spectrum(run, ask, home, files):
     assert np.abs(np.subtract(others, numbers)).max() > 0.1
 
 
-def test_scenes_name_lamps(ask, run, refuse, home, files):
+def test_scenes_name_lamps(ask, refuse, home, files):
     scene = home / "scene.toml"
     scene.write_text(
         'textures = ["wood.png"]\natlases = ["two.csv"]\nlights = ["lamp.spd", '
@@ -163,8 +152,6 @@ def test_scenes_name_lamps(ask, run, refuse, home, files):
     plan = ask("plan scene.toml --quick")
     assert plan["scene"]["lights"] == ["lamp", "A"]
     assert refuse("plan scene.toml -o lamp.spd --force").code == "output-is-input"
-    if plan["build"]:
-        assert not warning_lines(run("build --plan scene.plan.json"))
     for lights in ('"card.csv"', '"none.spd"', '"../lamp.spd"', '"folder"', "3"):
         scene.write_text(f'textures = ["wood.png"]\nlights = [{lights}]\n')
         assert refuse("plan scene.toml -o x.json").where == "scene.toml"

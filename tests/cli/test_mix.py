@@ -2,7 +2,6 @@
 
 import matplotlib.image
 import numpy as np
-import pytest
 from numpy.testing import assert_allclose
 
 from tests.extras.texture.conftest import planes, read_channels, write_exr
@@ -85,20 +84,3 @@ def test_paint_over_an_image(run, refuse, home, cubes):
     assert (
         refuse("paints mix --additive", BLUE, *options, "-o", "o.exr").code == "option"
     )
-
-
-@pytest.mark.parametrize(
-    "words",
-    [
-        (),
-        (BLUE, "--over", "in.exr"),
-        (BLUE, "-o", "out.exr"),
-        (BLUE, "--over", "in.exr", "-o", "out.exr", "--plot", "a.png"),
-        ("--theories", BLUE, YELLOW, "--thickness", 2),
-        (BLUE, "--plate", "reflected"),
-        ("--dye", BLUE, "--plate", "transmitted", "--ground", "black"),
-        ("--theories", "--duntley", "paint.csv"),
-    ],
-)
-def test_wrong_usage(misuse, words):
-    misuse("paints mix", *words)

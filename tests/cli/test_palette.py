@@ -118,11 +118,3 @@ def test_invalid_input_is_reported_before_any_work(
     assert refuse(f"lab palette {pair} {arguments}").code == code
     assert not (home / "a.html").exists()
     assert refuse("lab palette none.toml").code == "file-not-found"
-
-
-@pytest.mark.parametrize(
-    "arguments",
-    ["--image labels.png", "--html a.html --label leaf=#ff0000"],
-)
-def test_options_that_need_others(misuse, pair, arguments):
-    misuse(f"lab palette {pair} {arguments}")

@@ -62,12 +62,6 @@ def test_lights_are_shown_white_or_tinted(ask, home, wood, option, balanced):
     assert f'"balanced": {balanced}' in page
 
 
-def test_bad_input_is_refused(refuse, misuse, home, wood):
-    assert "--atlas" in misuse("relight --cube a.uplift --atlas macbeth")
-    (home / "relit.png").write_text("mine")
-    assert refuse("relight", wood).code == "file-exists"
-
-
 def test_samples_have_a_folder_and_may_be_copied_again(run, refuse, home):
     assert run("samples").stdout == run("samples").stdout
     assert set(os.listdir(home)) == {"uplift-samples"}

@@ -52,15 +52,6 @@ def test_summary_counts_nodes_and_default_name_has_scene(
     run("check macbeth-8-scene.uplift --atlas-dir", macbeth.parent)
 
 
-def test_invalid_scenes_are_errors(misuse, refuse, home):
-    assert refuse("build --scene b.*.exr").code == "texture"
-    error = refuse("build --dim 4 --scene c.png")
-    assert (error.code, error.where) == ("file-not-found", "c.png")
-    assert "--encoding" in misuse("build --encoding linear")
-    assert "--out-of-gamut" in misuse("build --out-of-gamut scale")
-    assert not list(home.glob("*.uplift"))
-
-
 def test_queries_of_other_colours_are_errors_unless_filled(run, refuse, scene):
     error = refuse("query 0 1 0 --cube", scene)
     assert error.code == "colour-not-in-scene"

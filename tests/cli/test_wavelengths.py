@@ -45,20 +45,6 @@ def test_given_wavelengths(answer):
     assert found["errors"]["D65"]["mean"] < plain["errors"]["D65"]["mean"] / 2
 
 
-@pytest.mark.parametrize(
-    ("options", "name"),
-    [
-        ("", "--count"),
-        ("--count 4 --tolerance 1", "--tolerance"),
-        ("--wavelengths 500 --count 1", "--wavelengths"),
-        ("--orders 3 2 1 --count 4", "--orders"),
-        ("--wavelengths 500 --method bins", "--method"),
-    ],
-)
-def test_options_that_exclude_or_need_others(misuse, options, name):
-    assert name in misuse(f"lab wavelengths {options}")
-
-
 def test_orders_of_the_channels(answer):
     found = answer("--orders", 3, 2, 1, "--light", "C")
     assert (found["count"], found["method"]) == (6, "meyer")
