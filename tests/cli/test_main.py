@@ -45,10 +45,9 @@ def test_help_lists_what_is_used_every_week_on_one_screen(run, monkeypatch):
     lines = run("--help").stdout.splitlines()
     assert len(lines) <= 24
     assert [line.split()[0] for line in lines[4:]] == list(COMMANDS)
-    assert lines[4].startswith("  build ")
-    below = run("lab").stdout.splitlines()
+    below = run("lab").stdout
     for name in SUMMARIES:
-        assert sum(line.startswith(f"  {name} ") for line in below) == 1
+        assert below.count(f"\n  {name} ") == 1
     assert run("--version").stdout == f"uplift {uplift.__version__}\n"
 
 
@@ -66,7 +65,6 @@ def test_help_shows_the_options_of_every_day_and_help_all_shows_all(run, command
     ("words", "expected"),
     [
         ("uplift tex", "texture"),
-        ("uplift build --atlas mac", "macbeth"),
         ("uplift build --observer Nik", "Nikon 5100 (NPL)"),
         ("uplift info sr", "srgb"),
     ],
@@ -137,11 +135,7 @@ def test_packages_that_are_too_old_are_named(failing, refuse, monkeypatch):
     ("error", "code"),
     [
         (MemoryError(), "out-of-memory"),
-        (
-            RuntimeError("RESOURCE_EXHAUSTED: Out of memory allocating 9 bytes."),
-            "out-of-memory",
-        ),
-        (PermissionError(13, "Permission denied", "x"), "output"),
+        (RuntimeError("RESOURCE_EXHAUSTED: Out of memory"), "out-of-memory"),
         (OSError(errno.ENOSPC, "No space left on device"), "output"),
     ],
 )
@@ -153,21 +147,18 @@ def test_failures_of_the_system_are_errors(failing, refuse, error, code):
 def test_warnings_of_the_library_are_one_line_each_and_others_are_ignored(
     monkeypatch, run
 ):
+    cube = uplift.load()
+
     def load(path):
-        warnings.warn(
-            UpliftWarning("is left out", code="entry-skipped", entry="a"), stacklevel=2
-        )
-        with warnings.catch_warnings():
-            warnings.simplefilter("always")
-            warnings.warn("internal", RuntimeWarning, stacklevel=2)
+        skipped = UpliftWarning("is left out", code="entry-skipped", entry="a")
+        warnings.warn(skipped, stacklevel=2)
+        warnings.warn("internal", RuntimeWarning, stacklevel=2)
         return cube
 
-    cube = uplift.load()
     monkeypatch.setattr("uplift.lookup.cube.load", load)
     before = warnings.showwarning
-    result = run("info")
     warning = f"warning: entry 'a': is left out; {HINTS['entry-skipped']}\n"
-    assert result.stderr == warning
+    assert run("info").stderr == warning
     assert warnings.showwarning is before
 
 
@@ -187,7 +178,6 @@ def test_topics_have_text_and_names_that_no_command_has(run):
     assert not TOPICS.keys() & set(COMMANDS)
     for topic in TOPICS:
         assert len(run("help", topic).stdout) > 100
-        assert f"{topic} " in run("help").stdout
     assert MODE_MEANINGS.keys() == MODES.keys()
     assert tuple(GAMUT_MEANINGS) == METHODS
 
@@ -224,66 +214,37 @@ def test_help_fits_80_columns(monkeypatch):
 OPTIONS = []
 for command in COMMANDS_BY_PATH.values():
     OPTIONS += [(command, option) for option in command.params]
-NUMERIC = [
-    pytest.param(command, option, id=f"{command.name}{option.opts[-1]}")
-    for command, option in OPTIONS
-    if isinstance(
-        option.type, Number | click.types.IntParamType | click.types.FloatParamType
-    )
-]
+KNOWN = set(chain.from_iterable(option.opts for _, option in OPTIONS))
+SOURCES = {path: path.read_text("utf-8") for path in (ROOT / "uplift").rglob("*.py")}
 
 
-def test_hints_name_options_and_codes_that_exist(repository):
-    known = set(chain.from_iterable(option.opts for _, option in OPTIONS))
-    sources = "".join(
-        path.read_text("utf-8") for path in (repository / "uplift").rglob("*.py")
-    )
+def test_hints_name_options_and_codes_that_exist():
     for code, hint in HINTS.items():
-        assert f'"{code}"' in sources, code
-        assert {
-            word.strip(",.;:'()") for word in hint.split() if word.startswith("--")
-        } <= known, hint
+        assert any(f'"{code}"' in source for source in SOURCES.values()), code
+        assert KNOWN.issuperset(re.findall(r"(?<!\S)--[a-z-]+", hint)), hint
 
 
-def test_texts_of_the_library_name_parameters_that_are_options_and_no_options(
-    repository,
-):
-    known = set(chain.from_iterable(option.opts for _, option in OPTIONS))
+def test_texts_of_the_library_name_parameters_that_are_options_and_no_options():
     in_hints = {"measured", "outside"}  # of errors with a hint in `HINTS`
-    laboratory = repository / "uplift" / "lab"
-    pages = repository / "uplift" / "extras" / "pages"
-    for path in (repository / "uplift").rglob("*.py"):
-        if path.is_relative_to(laboratory) or path.is_relative_to(pages):
+    for path, source in SOURCES.items():
+        # Rooms and files that have programs.
+        if {"lab", "pages", "timing.py"} & set(path.parts):
             continue
-        if path.name == "timing.py":  # which has a program
-            continue
-        for text in prose(path):
-            assert text.startswith("uplift ") or not re.search(" --[a-z]", text), (
-                f"{path}: {text}"
-            )
-            names = (
-                set(re.findall(r"""(?<![\w'"-])([a-z_]+)=(?=$|['"\w])""", text))
-                - in_hints
-            )
-            assert {f"--{name.replace('_', '-')}" for name in names} <= known, (
-                f"{path}: {text}"
-            )
+        for text in prose(source):
+            assert text.startswith("uplift ") or not re.search(" --[a-z]", text), path
+            names = re.findall(r"""(?<![\w'"-])([a-z_]+)=(?=$|['"\w])""", text)
+            for name in set(names) - in_hints:
+                assert f"--{name.replace('_', '-')}" in KNOWN, f"{path}: {text}"
 
 
-def prose(path):
+def prose(source):
     """Texts with blanks of a module, without its docstrings."""
-    tree = ast.parse(path.read_text("utf-8"))
-    docs = {node.value for node in ast.walk(tree) if isinstance(node, ast.Expr)}
-    constants = (
-        node
-        for node in ast.walk(tree)
-        if isinstance(node, ast.Constant) and node not in docs
-    )
-    return [
-        node.value
-        for node in constants
-        if isinstance(node.value, str) and " " in node.value
-    ]
+    nodes = list(ast.walk(ast.parse(source)))
+    docs = {node.value for node in nodes if isinstance(node, ast.Expr)}
+    for node in nodes:
+        text = getattr(node, "value", None)
+        if isinstance(text, str) and " " in text and node not in docs:
+            yield text
 
 
 @pytest.mark.parametrize(
@@ -299,33 +260,30 @@ def test_hints_of_the_library_name_options_on_the_command_line(hint, shown):
     assert hint_for(UpliftError("is bad", hint=hint)) == shown
 
 
-@pytest.mark.parametrize(("command", "option"), NUMERIC)
-def test_invalid_numbers_are_refused_on_one_line(command, option):
-    for number in ("nan", "inf", "1e999", "1_0", "٣", "9" * 5000, "", "0x10"):
-        with pytest.raises(click.BadParameter) as caught:
-            option.type.convert(number, option, None)
-        assert caught.value.message.isprintable()
-        assert len(caught.value.message) < 200
+def test_invalid_numbers_are_refused_on_one_line():
+    numeric = (Number, click.types.IntParamType, click.types.FloatParamType)
+    for _, option in OPTIONS:
+        if not isinstance(option.type, numeric):
+            continue
+        for number in ("nan", "inf", "1e999", "1_0", "٣", "9" * 5000, "", "0x10"):
+            with pytest.raises(click.BadParameter) as caught:
+                option.type.convert(number, option, None)
+            assert caught.value.message.isprintable()
+            assert len(caught.value.message) < 200
 
 
-def test_tables_wrap_texts_keep_numbers_whole_and_show_texts_as_they_are(
-    capsys, monkeypatch
-):
+def test_tables_wrap_texts_and_show_them_as_they_are(capsys, monkeypatch):
     monkeypatch.setenv("COLUMNS", "60")
     row = {
         "name": "[r]\x1b[2J",
         "first": 1234567.25,
         "rgb": [0.25, -0.5],
         "text": "some words of text, and more",
-        "none": None,
     }
-    headings = {key: key for key in row} | {"rgb": "two numbers"}
-    Table([row], headings, "a title", formats={"first": ".1f"}).print_text()
-    title, _, _, *lines = capsys.readouterr().out.splitlines()
-    assert title == "a title"
-    assert max(map(cell_len, lines)) <= 60
-    assert lines[0].startswith("[r]\\x1b[2J  1234567.2  0.250 -0.500  some words")
-    assert len(lines) == 2
+    Table([row], formats={"first": ".1f"}).print_text()
+    *_, first, second = capsys.readouterr().out.splitlines()
+    assert max(cell_len(first), cell_len(second)) <= 60
+    assert first.startswith("[r]\\x1b[2J  1234567.2  0.250 -0.500  some words")
 
 
 def test_rows_are_csv_with_a_column_for_each_number(capsys):
@@ -339,7 +297,6 @@ def test_rows_are_csv_with_a_column_for_each_number(capsys):
     [
         "atlas macbeth",
         "lab bounds #8a2a20",
-        "lab diff {}/moments-8.uplift {}/sigmoid-8.uplift",
         "info {}/moments-8-macbeth.uplift",
         "lights info",
         "query #da7b2a --light A",
@@ -360,43 +317,28 @@ def test_progress_off_terminals_is_a_line_now_and_then(monkeypatch, capsys):
     clock = iter(range(0, 100, 4))
     monkeypatch.setattr(time, "monotonic", lambda: float(next(clock)))
     monkeypatch.setattr(progress_module, "INTERVAL", 10.0)
-    event = Progress("fit", 3, 8, detail="round 2")
-    for options, lines in (
-        ({"title": "rows"}, ["rows: 3 of 8, round 2"]),
-        ({}, ["fitting: 3 of 8, round 2"]),
-        ({"quiet": True}, []),
-    ):
-        with progress_bar(**options) as report:
-            for _ in range(4):
-                report(event)
-        assert capsys.readouterr().err.splitlines() == lines
+    with progress_bar() as report:
+        for _ in range(4):
+            report(Progress("fit", 3, 8, detail="round 2"))
+    assert capsys.readouterr().err == "fitting: 3 of 8, round 2\n"
 
 
 @pytest.mark.parametrize(
     ("command", "words"),
     [
         ("info wood.png", "must be an uplift cube, got an image"),
-        ("report paints.csv", "must be an uplift cube, got text"),
-        ("lights info wood.png", "got an image"),
-        ("build --atlas wood.png", "must be a file of spectra, got an image"),
         ("build --atlas {}", "must be a file of spectra, got a cube"),
         ("build --space nosuch", "; 'uplift help spaces' lists all"),
         ("query 0.1 0.1 0.1 --light 2700", "did you mean '2700K'?"),
-        ("plan wood.png", "not UTF-8, but an image"),
-        ("query --check wood.png", "not UTF-8, but an image"),
-        ("build --illuminant nosuch", "; 'uplift help illuminants' lists all"),
-        ("build --observer nosuch", "; 'uplift help observers' lists all"),
         ("build --observer paints.csv", "use --space camera"),
         (
             "lights build --atlas macbeth",
             "macbeth: the file states reflectance ('reflectance spectrum')",
         ),
-        ("build --atlas colorchecker", "'uplift atlas' lists"),
         (
             "build --atlas macbeth --atlas paints.csv",
             "first used at macbeth:7; leave out one of the two files",
         ),
-        ("query 0.1,,0.2", "'0.1,,0.2' is not a colour"),
     ],
 )
 def test_errors_name_what_was_given_and_what_to_do(

@@ -54,30 +54,24 @@ def test_info(run, ask, passes):
     assert "FL11" in run("passes info passes.toml --light FL11").stdout
 
 
-def test_texture_decode(run, ask, passes, home):
+def test_texture_decode(run, passes, home):
     """A texture lit by a light, as the picture of a renderer."""
-    rng = np.random.default_rng(2)
-    colours = rng.random((9, 8, 3)).astype(np.float32)
+    colours = np.random.default_rng(2).random((9, 8, 3)).astype(np.float32)
     write(home / "wood.exr", colours)
     run("texture wood.exr --passes passes.toml -o flat")
     light = passes.light("D65").numbers.astype(np.float32)
-    for number in (1, 2):
-        lit = pixels(home / f"flat.{number}.exr") * light[3 * number - 3 : 3 * number]
-        write(home / f"lit.{number}.exr", lit.astype(np.float32))
-    command = "passes decode lit.1.exr lit.2.exr --passes passes.toml -o lit.exr"
-    answer = ask(command)
-    assert answer == {"output": ["lit.exr"], "pixels": 72}
+    for number, lamp in ((1, light[:3]), (2, light[3:])):
+        write(home / f"lit.{number}.exr", pixels(home / f"flat.{number}.exr") * lamp)
+    run("passes decode lit.1.exr lit.2.exr --passes passes.toml -o lit.exr")
     assert np.abs(pixels(home / "lit.exr") - colours).max() < 0.05
 
 
 def test_textures_of_several_images(run, passes, home):
     for name in ("a", "b"):
         write(home / f"{name}.exr", np.full((2, 3, 3), 0.5, np.float32))
-    run("texture a.exr b.exr --passes passes.toml -o out")
+    run("texture a.exr b.exr --passes passes.toml -o out --processes 1")
     names = sorted(path.name for path in (home / "out").iterdir())
     assert names == ["a.1.exr", "a.2.exr", "b.1.exr", "b.2.exr"]
-    again = run("texture a.exr b.exr --passes passes.toml -o out --resume")
-    assert "4 skipped" in again.stdout
     run("lights texture a.exr --passes passes.toml -o sky")
     assert (pixels(home / "sky.2.exr") > 0).all()
 
@@ -99,33 +93,12 @@ def test_query_of_lights(ask, passes):
     assert_allclose(xyz, [1.901, 2, 2.178], rtol=0.01)
 
 
-def test_sequences(run, refuse, passes, home):
-    for frame in (1, 2):
-        for number in (1, 2):
-            picture = np.full((2, 3, 3), 0.1 * frame, np.float32)
-            write(home / f"a.{frame:04}.{number}.exr", picture)
+def test_sequences(run, passes, home):
+    for name, value in (("1.1", 0.1), ("1.2", 0.1), ("2.1", 0.2), ("2.2", 0.2)):
+        write(home / f"a.{name}.exr", np.full((2, 3, 3), value, np.float32))
     run("passes decode 'a.*.1.exr' 'a.*.2.exr' --passes passes.toml -o out")
-    ratio = pixels(home / "out/a.0002.exr") / pixels(home / "out/a.0001.exr")
+    ratio = pixels(home / "out/a.2.exr") / pixels(home / "out/a.1.exr")
     assert_allclose(ratio, 2, rtol=1e-5)
-    (home / "a.0002.2.exr").unlink()
-    error = refuse("passes decode 'a.*.1.exr' 'a.*.2.exr' --passes passes.toml -o b")
-    assert error.code == "frames-differ"
-
-
-@pytest.mark.parametrize(
-    ("words", "code"),
-    [
-        ("a.1.exr -o a.exr", "passes-missing"),
-        ("a.1.exr a.2.exr -o a.png", "option"),
-        ("a.1.exr a.2.exr -o a.1.exr --force", "output-is-input"),
-        ("a.1.exr a.2.exr -o a.exr --light FL2", "unknown-name"),
-        ("a.1.exr a.2.exr -o a.exr --space sRBG", "unknown-name"),
-    ],
-)
-def test_decode_refuses(refuse, passes, home, words, code):
-    for number in (1, 2):
-        write(home / f"a.{number}.exr", np.full((2, 3, 3), 0.1, np.float32))
-    assert refuse(f"passes decode --passes passes.toml {words}").code == code
 
 
 @pytest.mark.parametrize("tool", ["text", "nuke", "blender"])

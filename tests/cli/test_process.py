@@ -85,18 +85,11 @@ def test_closed_streams_that_are_not_needed_do_no_harm():
     assert json.loads(done.stdout)["rgb"] == [0, 0, 0]
 
 
-def test_json_is_the_same_on_any_terminal(tmp_path):
-    (tmp_path / "a.csv").write_text(
-        "name,400,500,600,700\n青 ΔE00,0.1,0.2,0.3,0.4\n", encoding="utf-8"
-    )
+def test_json_is_ascii_where_the_terminal_is(tmp_path):
+    (tmp_path / "a.csv").write_text("name,400,700\n青 ΔE00,0.1,0.4\n", encoding="utf-8")
     command = f"{UPLIFT} atlas {tmp_path}/a.csv --format json"
-    ascii_answer, answer = (
-        shell(command, PYTHONIOENCODING=encoding).stdout
-        for encoding in ("ascii", "utf-8")
-    )
-    assert ascii_answer.isascii()
-    assert not answer.isascii()
-    assert json.loads(ascii_answer) == json.loads(answer)
+    answer = json.loads(shell(command, PYTHONIOENCODING="ascii").stdout.decode("ascii"))
+    assert answer["entries"][0]["name"] == "青 ΔE00"
 
 
 @pytest.fixture
@@ -155,15 +148,21 @@ def is_running(number):
 
 
 @needs_proc
-def test_an_interrupt_ends_a_command_and_its_workers_and_leaves_no_file(
-    texture, tmp_path
+@pytest.mark.parametrize(
+    ("number", "code", "message"),
+    [
+        (signal.SIGINT, 130, "0 of 2 images finished, continue with --resume"),
+        (signal.SIGTERM, 143, ""),
+    ],
+)
+def test_signals_end_a_command_and_its_workers_and_leave_no_file(
+    texture, tmp_path, number, code, message
 ):
     workers = workers_of(texture)
     assert len(workers) == 2
-    texture.send_signal(signal.SIGINT)
-    assert texture.wait(SECONDS) == 130
-    line = "error: interrupted; 0 of 2 images finished, continue with --resume\n"
-    assert texture.stderr.read() == line
+    texture.send_signal(number)
+    assert texture.wait(SECONDS) == code
+    assert message in texture.stderr.read()
     wait_until(lambda: not any(map(is_running, workers)))
     assert list((tmp_path / "out").iterdir()) == []
 
@@ -208,38 +207,27 @@ def strange_folder(tmp_path):
     assert not (tmp_path / "trace").exists()
 
 
-def test_no_module_of_the_working_folder_is_loaded_by_a_command_and_its_workers(
-    strange_folder, tmp_path
-):
+def test_no_module_of_the_working_folder_is_loaded(strange_folder, tmp_path):
     script = tmp_path / "uplift"  # as pip installs it
     script.write_text(
         "from uplift_cli.__main__ import run\nif __name__ == '__main__':\n    run()\n"
     )
-    words = TEXTURE.split()
-    output_of(sys.executable, script, *words, cwd=strange_folder, timeout=SECONDS)
+    options = {"cwd": strange_folder, "timeout": SECONDS}
+    output_of(sys.executable, script, *TEXTURE.split(), **options)
     assert len(list(strange_folder.glob("out/*"))) == 2
-
-
-def test_no_module_of_the_working_folder_is_loaded_by_a_command_of_a_module(
-    strange_folder,
-):
     # Python itself loads these for -m.
     for name in ("runpy", "importlib", "contextlib", "types", "warnings", "functools"):
         (strange_folder / f"{name}.py").unlink(missing_ok=True)
-    words = f"{UPLIFT} {PLOT}".split()
-    output_of(*words, cwd=strange_folder, timeout=SECONDS)
+    output_of(*f"{UPLIFT} {PLOT}".split(), **options)
 
 
 def test_settings_of_matplotlib_are_neither_obeyed_nor_remarked_on(tmp_path):
-    for name, text in (("plain", ""), ("strange", "axes.facecolor: red\nno colon")):
-        folder = tmp_path / name
-        folder.mkdir()
-        (folder / "matplotlibrc").write_text(text)
-        # The folder of the user, and the working folder.
-        done = shell(f"cd {folder}; {UPLIFT} {PLOT}", MPLCONFIGDIR=str(folder))
-        assert (done.returncode, done.stderr) == (0, b"plot.png: 1 colour\n")
-    plain, strange = (tmp_path / name / "plot.png" for name in ("plain", "strange"))
-    assert strange.read_bytes() == plain.read_bytes()
+    (tmp_path / "matplotlibrc").write_text("figure.facecolor: red\nno colon")
+    # The folder of the user, and the working folder.
+    done = shell(f"cd {tmp_path}; {UPLIFT} {PLOT}", MPLCONFIGDIR=str(tmp_path))
+    assert (done.returncode, done.stderr) == (0, b"plot.png: 1 colour\n")
+    with Image.open(tmp_path / "plot.png") as image:
+        assert image.convert("RGB").getpixel((0, 0)) != (255, 0, 0)
 
 
 @pytest.fixture
@@ -261,21 +249,16 @@ def used_cache():
 
 
 @needs_modes
-@pytest.mark.parametrize("mode", [0o770, 0o702])
-def test_compiled_code_is_kept_in_a_private_folder_only(cache, mode):
+def test_compiled_code_is_kept_in_a_private_folder_only(cache):
     assert used_cache() == str(cache)
     assert cache.stat().st_mode & 0o777 == 0o700
-    cache.chmod(mode)
-    with warns("warning"):
-        assert used_cache() is None
-
-
-@needs_modes
-def test_compiled_code_is_not_kept_where_another_folder_can_take_its_place(cache):
-    cache.mkdir(0o700, parents=True)
-    cache.parent.chmod(0o777)
-    with warns("warning"):
-        assert used_cache() is None
+    # Others can write to the folder, or put another one in its place.
+    for path, mode in ((cache, 0o770), (cache, 0o702), (cache.parent, 0o777)):
+        before = path.stat().st_mode
+        path.chmod(mode)
+        with warns("warning"):
+            assert used_cache() is None
+        path.chmod(before)
     # As /tmp, where users can replace their own folders only.
     cache.parent.chmod(0o1777)
     assert used_cache() == str(cache)
@@ -299,38 +282,38 @@ def test_a_cache_folder_that_cannot_be_used_is_a_warning(cache, tmp_path, monkey
             assert used_cache() is None
 
 
+CACHED = "cache/uplift/*-cache"
 BUILD = (
     f"env -u JAX_COMPILATION_CACHE_DIR {UPLIFT} build --dim 2 --prior smooth "
     "--coefficients 3 --force -o"
 )
 
 
-def test_compiled_code_is_kept_and_removed_if_it_cannot_be_read(tmp_path):
+def test_compiled_code_is_kept_and_removed_if_it_cannot_be_used(tmp_path):
     """Also that of users whose files their group can write."""
-    inodes = []
-    for damage in (True, False, False, False):
-        build = f"umask 0002; {BUILD} {tmp_path}/cube.uplift"
-        done = shell(build, XDG_CACHE_HOME=f"{tmp_path}/cache")
-        assert done.returncode == 0
-        entries = list(tmp_path.glob("cache/uplift/*-cache"))
-        assert entries
-        inodes.append({entry.stat().st_ino for entry in entries})
-        for entry in entries if damage else ():
-            entry.write_bytes(b"damaged")
-    assert b"damaged" not in [entry.read_bytes() for entry in entries]
-    assert inodes[-1] == inodes[-2]
 
+    def build():
+        command = f"umask 0002; {BUILD} {tmp_path}/cube.uplift"
+        places = {"XDG_CACHE_HOME": f"{tmp_path}/cache", "UPLIFT_TRACEBACK": ""}
+        code = shell(command, **places).returncode
+        return code, {path: path.read_bytes() for path in tmp_path.glob(CACHED)}
 
-def test_exchanged_compiled_code_is_removed_with_the_error_that_it_causes(tmp_path):
-    build = f"{BUILD} {tmp_path}/cube.uplift"
-    places = {"XDG_CACHE_HOME": str(tmp_path), "UPLIFT_TRACEBACK": ""}
-    assert shell(build, **places).returncode == 0
-    first, *_, last = entries = list(tmp_path.glob("uplift/*-cache"))
-    contents = first.read_bytes()
-    first.write_bytes(last.read_bytes())
-    last.write_bytes(contents)
-    assert shell(build, **places).returncode == 70
-    assert not any(entry.exists() for entry in entries)
+    code, entries = build()
+    assert code == 0
+    assert entries
+    for path in entries:
+        path.write_bytes(b"damaged")
+    code, after = build()
+    assert code == 0
+    assert b"damaged" not in after.values()
+    _, entries = build()
+    inodes = [path.stat().st_ino for path in entries]
+    assert build() == (0, entries)
+    assert inodes == [path.stat().st_ino for path in entries]
+    first, *_, last = entries
+    first.write_bytes(entries[last])
+    last.write_bytes(entries[first])
+    assert build() == (70, {})
 
 
 def test_a_missing_device_of_jax_is_no_internal_error(tmp_path):
@@ -344,7 +327,6 @@ def test_a_missing_device_of_jax_is_no_internal_error(tmp_path):
 @pytest.mark.parametrize(
     ("limit", "command"),
     [
-        (1_500_000, "build --dim 8 -o out"),
         (300_000, "build -o out"),
         (1_500_000, f"check {ROOT}/cubes/sigmoid-8.uplift"),
     ],

@@ -8,7 +8,6 @@ import subprocess
 import sys
 
 import colour
-import matplotlib.image
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
@@ -64,13 +63,12 @@ def test_syntax_of_colours(ask, words, rgb):
 
 
 def test_several_colours_have_a_row_each(ask, run, refuse, home):
-    words = ("#cc3319", "0.8", "0.2", "0.1", "#c31", "0.5,0.5,0.5")
-    first, second, third, fourth = [row["rgb"] for row in ask("query", *words)]
-    assert first[:2] == third[:2] == pytest.approx(RED[:2])
-    assert (second, fourth) == ([0.8, 0.2, 0.1], [0.5, 0.5, 0.5])
-    assert run("query", *words, "--plot").stdout.count("#") == 4
+    words = "query 0.5,0.5,0.5 0.8 0.2 0.1 '0.1 0.2 0.3'"
+    colours = [row["rgb"] for row in ask(words)]
+    assert colours == [[0.5, 0.5, 0.5], [0.8, 0.2, 0.1], [0.1, 0.2, 0.3]]
+    assert run(words, "--plot").stdout.count("#") == 3
     assert (home / "plot.png").is_file()
-    assert refuse("query", *words, "0.5").code == "colour"
+    assert refuse(words, "0.5").code == "colour"
 
 
 @pytest.mark.parametrize(
@@ -89,23 +87,14 @@ def test_lines_that_may_be_misread(refuse, table, line, code):
 
 
 def test_whole_numbers_between_commas(ask, refuse, table):
-    text = "r,g,b,i,j,k\n0,1,0,3,0,4\n"
-    assert ask("query --input", table(text))[0]["rgb"] == [0, 1, 0]
-    assert ask("query --input", table("1,0,0,1\n"))[0]["rgb"] == [1, 0, 0]
-    assert ask("query --encoded --input", table("0,255,0,25,0,25\n"))[0]["rgb"] == [
-        0,
-        1,
-        0,
-    ]
-    assert [one["rgb"] for one in ask("query 1,0,0 0,1,0")] == [
-        [1, 0, 0],
-        [0, 1, 0],
-    ]
-    for words in (
-        "0,2,0,3,0,4",
-        "1,0,0,0,1,0",
-        "0,2,0,3,0,4 --out-of-gamut clip",
+    for text, options, rgb in (
+        ("r,g,b,i,j,k\n0,1,0,3,0,4\n", "", [0, 1, 0]),
+        ("1,0,0,1\n", "", [1, 0, 0]),
+        ("0,255,0,25,0,25\n", "--encoded", [0, 1, 0]),
     ):
+        (answer,) = ask(f"query {options} --input", table(text))
+        assert answer["rgb"] == rgb
+    for words in ("1,0,0,0,1,0", "0,2,0,3,0,4 --out-of-gamut clip"):
         assert refuse(f"query {words}").code == "ambiguous-numbers"
 
 
@@ -149,9 +138,6 @@ def test_colours_of_another_display(ask, name):
     theirs = colour.matrix_RGB_to_RGB("P3-D65", "sRGB")
     requested = ask("query 0.5 0.6 0.3 --input-space", name)["requested_rgb"]
     assert_allclose(requested, theirs @ [0.5, 0.6, 0.3], rtol=0, atol=3e-4)
-    green = ask("query 0 1 0 --out-of-gamut clip --input-space", name)
-    assert_allclose(green["requested_rgb"], theirs[:, 1], rtol=0, atol=3e-4)
-    assert green["rgb"] == [0, 1, 0]
 
 
 @pytest.mark.parametrize(
@@ -298,32 +284,25 @@ def test_csv_has_the_numbers_of_json_and_of_the_library(ask, run, table, macbeth
     line = "query --light A --light FL11 --wavelengths 450,550.5 --cube"
     words = macbeth_cube, "--input", path
     text = run(line, *words, "--format", "csv").stdout
-    rows = csv.DictReader(io.StringIO(text))
-    names = "r,g,b,delta_e_2000,standard_error,error_bound,standard_error_A"
-    names += ",error_bound_A,standard_error_FL11,error_bound_FL11,hex_A,hex_FL11"
-    assert rows.fieldnames == [*names.split(","), "entry", "450", "550.5"]
     cube = uplift.load(macbeth_cube)
+    rows = csv.DictReader(io.StringIO(text))
     for row, answer in zip(rows, ask(line, *words), strict=True):
-        rgb = answer["rgb"]
-        assert [float(row[name]) for name in "rgb"] == rgb
-        assert [float(row["450"]), float(row["550.5"])] == answer["reflectance"]
-        assert float(row["standard_error"]) == answer["standard_error"]
-        assert float(row["error_bound"]) == answer["error_bound"]
         assert (row["entry"] or None) == answer["entry"]
-        for light in ("A", "FL11"):
-            error = float(row[f"standard_error_{light}"])
-            bound = float(row[f"error_bound_{light}"])
-            assert error == answer["standard_errors"][light]
-            assert error == pytest.approx(float(cube.standard_error(rgb, light)))
-            assert bound == answer["error_bounds"][light]
-            assert bound == pytest.approx(float(cube.error_bound(rgb, light)))
-            assert row[f"hex_{light}"] == answer["lights"][light]["hex"]
+        assert float(row["450"]) == answer["reflectance"][0]
+        assert float(row["550.5"]) == answer["reflectance"][1]
+        for key in ("standard_error", "error_bound"):
+            assert float(row[key]) == answer[key]
+            for light, error in answer[f"{key}s"].items():
+                expected = getattr(cube, key)(answer["rgb"], light)
+                assert error == pytest.approx(expected)
+                assert float(row[f"{key}_{light}"]) == error
+                assert row[f"hex_{light}"] == answer["lights"][light]["hex"]
     text = run("query --light FL11 --light HP1 --cube", *words).stdout
     assert "unlike the atlas" in text
     assert max(map(len, text.splitlines())) <= 80
 
 
-def test_colours_under_lights_are_those_of_relit_images(run, ask, macbeth_cube):
+def test_colours_under_lights_are_those_of_relit_images(ask, macbeth_cube):
     """sRGB with the white of the light, as looks state them."""
     cube = uplift.load(macbeth_cube)
     (screen,) = display_sensors(["FL11"], cube.observer)
@@ -331,9 +310,7 @@ def test_colours_under_lights_are_those_of_relit_images(run, ask, macbeth_cube):
     words = f"query --cube {macbeth_cube} 0.2 0.1 0.05 --light FL11"
     found = ask(words)["lights"]["FL11"]
     assert_allclose(found["srgb"], expected, atol=1e-12)
-    assert_allclose(found["xyz"], screen.xyz(expected), atol=1e-12)
     assert found["hex"] == hex_codes(expected[None])[0]
-    assert found["hex"] in run(words).stdout
 
 
 @pytest.mark.parametrize(
@@ -373,10 +350,3 @@ def test_a_hint_names_the_only_cube_of_the_folder(run, home, plain_cube):
     plain_cube.save(home / "mine.uplift")
     assert "--cube mine.uplift" in run("query #cc3319").stderr
     assert "--cube" not in run("query #cc3319 --format json").stderr
-
-
-def test_the_curve_of_a_plot_has_the_colour(run, home):
-    run("query #cc3319 --plot red.png")
-    picture = matplotlib.image.imread(home / "red.png")
-    distance = np.abs(picture[..., :3] - np.array([204, 51, 25]) / 255).max(axis=-1)
-    assert (distance < 0.01).sum() > 100

@@ -108,37 +108,39 @@ PALETTE = (
 )
 
 
+TEXTS = {
+    "broken.png": "",
+    "mine": "",
+    "taken/compare.html": "",
+    "two.csv": "name,400,550,700\none,0.5,0.5,0.5\nother,0.4,0.4,0.4\n",
+    "negative.csv": "name,red,400,550,700\na,-1,0.5,0.5,0.5\n",
+    "nothing.csv": "name,red,400,550,700\na,0,0.5,0.5,0.5\n",
+    "palette.toml": PALETTE,
+    "paints.toml": to_toml(invented()),
+    "scene.toml": 'textures = ["wood.png", "none.png"]\n',
+    "spreadsheet.toml": PALETTE.replace(
+        "rgb = [0.5, 0.5, 0.5]", 'atlas = "paints.xlsx", entry = "x"'
+    ),
+    "spreadsheet-scene.toml": 'textures = ["wood.png"]\natlases = ["paints.xlsx"]\n',
+}
+
+
 @pytest.fixture
-def files(home, repository, plain_cube):
+def files(home, repository, plain_cube, passes_text):
     """Valid inputs in the working folder."""
     samples = repository / "uplift" / "samples" / "files"
     for name in ("wood.png", "paints.xlsx"):
         shutil.copy(samples / name, home)
     shutil.copy(repository / "cubes" / "moments-8-macbeth.uplift", home / "cube.uplift")
     without_evidence(plain_cube).save(home / "old.uplift")
-    shutil.copy(repository / "atlases" / "macbeth.txt", home)
     write_exr(home / "fire.exr", planes(np.full((2, 2, 3), 0.5, np.float32)))
-    for folder in ("copy", "taken"):
-        (home / folder).mkdir()
-    shutil.copy(home / "macbeth.txt", home / "copy")
-    for name in ("broken.png", "mine", "taken/compare.html"):
-        (home / name).write_text("")
-    (home / "two.csv").write_text(
-        "name,400,550,700\none,0.5,0.5,0.5\nother,0.4,0.4,0.4\n"
-    )
-    for name, parts in (("negative.csv", -1), ("nothing.csv", 0)):
-        text = f"name,red,400,550,700\na,{parts},0.5,0.5,0.5\n"
+    (home / "taken").mkdir()
+    (home / "copy").mkdir()
+    for folder in (home, home / "copy"):
+        shutil.copy(repository / "atlases" / "macbeth.txt", folder)
+    for name, text in TEXTS.items():
         (home / name).write_text(text)
-    (home / "palette.toml").write_text(PALETTE)
-    (home / "paints.toml").write_text(to_toml(invented()))
-    (home / "scene.toml").write_text('textures = ["wood.png", "none.png"]\n')
-    measured = 'atlas = "paints.xlsx", entry = "x"'
-    (home / "spreadsheet.toml").write_text(
-        PALETTE.replace("rgb = [0.5, 0.5, 0.5]", measured)
-    )
-    (home / "spreadsheet-scene.toml").write_text(
-        'textures = ["wood.png"]\natlases = ["paints.xlsx"]\n'
-    )
+    (home / "passes.toml").write_text(passes_text)
     return set(os.listdir(home))
 
 
@@ -202,9 +204,8 @@ def test_missing_packages_are_named_before_anything_is_computed_or_written(
 
 
 def test_every_figure_has_a_line():
-    options = set()
-    for line in UNPLOTTED.strip().splitlines():
-        options.update(itertools.product([command_of(line)], line.split()))
+    lines = UNPLOTTED.strip().splitlines()
+    options = {(command_of(line), word) for line in lines for word in line.split()}
     for path, command in commands(main).items():
         for param in command.params:
             if param.type in (PLOT, FIGURE_PAGE, SHEET):
