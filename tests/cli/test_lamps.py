@@ -6,7 +6,6 @@ import shutil
 import numpy as np
 import OpenEXR
 import pytest
-from numpy.testing import assert_allclose
 
 from uplift.colorimetry.observer import illuminant_spd
 
@@ -72,14 +71,6 @@ def test_every_light_may_be_a_file(run, refuse, home, files, line):
     is_json = not line.removeprefix("lab ").startswith(WITHOUT_JSON)
     result = run(*words, *["--format", "json"] * is_json)
     assert not is_json or '"lamp"' in result.stdout
-
-
-def test_a_lamp_of_several_and_answers_under_it(ask, files):
-    words = "query #888 --light two.csv:warm --light lamp.spd --light A"
-    lights = ask(words)["lights"]
-    assert list(lights) == ["warm", "lamp", "A"]
-    assert_allclose(lights["lamp"]["srgb"], lights["A"]["srgb"], atol=0.02)
-    assert lights["lamp"]["xyz"] != lights["A"]["xyz"]
 
 
 def test_a_texture_names_its_lamp_and_a_changed_lamp_is_another_texture(

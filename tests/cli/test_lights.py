@@ -38,7 +38,7 @@ def test_a_table_of_measured_lamps_is_built_and_queried(ask, run, home, monkeypa
     power = np.exp(-(((at - 600) / 40) ** 2)) + 0.1
     rows = "".join(f"{nm}\t{value:.6g}\n" for nm, value in zip(at, power, strict=True))
     (home / "bulb.spd").write_text(rows)
-    assert "bulb" in run("lights build --atlas bulb.spd -o x.uplift").stdout
+    run("lights build --atlas bulb.spd -o x.uplift")
     table = uplift.load_emission("x.uplift")
     assert table.lamp_names[0] == "bulb"
     rgb = table.rgb(table.data.entries.spectra[0])

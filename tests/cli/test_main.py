@@ -152,7 +152,9 @@ def test_warnings_of_the_library_are_one_line_each_and_others_are_ignored(
     def load(path):
         skipped = UpliftWarning("is left out", code="entry-skipped", entry="a")
         warnings.warn(skipped, stacklevel=2)
-        warnings.warn("internal", RuntimeWarning, stacklevel=2)
+        with warnings.catch_warnings():
+            warnings.simplefilter("always")
+            warnings.warn("internal", RuntimeWarning, stacklevel=2)
         return cube
 
     monkeypatch.setattr("uplift.lookup.cube.load", load)
@@ -280,7 +282,9 @@ def test_tables_wrap_texts_and_show_them_as_they_are(capsys, monkeypatch):
         "rgb": [0.25, -0.5],
         "text": "some words of text, and more",
     }
-    Table([row], formats={"first": ".1f"}).print_text()
+    Table(
+        [row], dict(zip(row, row, strict=True)), formats={"first": ".1f"}
+    ).print_text()
     *_, first, second = capsys.readouterr().out.splitlines()
     assert max(cell_len(first), cell_len(second)) <= 60
     assert first.startswith("[r]\\x1b[2J  1234567.2  0.250 -0.500  some words")

@@ -8,8 +8,6 @@ import pytest
 from numpy.testing import assert_allclose
 
 from tests.extras.paint.invented import NAMES, invented, measured, plan
-from uplift.colorimetry import observer
-from uplift.extras.colour.srgb import hex_codes
 from uplift.extras.paint.paints_file import read_paints, write_paints
 
 GRID = (400, 700, 20)
@@ -78,8 +76,6 @@ def test_recipes_match_those_of_the_library(run, ask, paints):
     best = answer["recipes"][0]
     named = {paint["name"]: paint["parts"] for paint in best["paints"]}
     parts = [named.get(name, 0) for name in paints.names]
-    rgb = observer.sensor(wavelengths=GRID).rgb(paints.reflectance([parts]))
-    assert best["colour"] == hex_codes(rgb)[0]
     assert best["cost"] == pytest.approx(paints.cost(parts))
     assert set(best["delta_e"]) == {"D65", "A"}
     assert not set(best["elsewhere"]) & {"D65", "A"}

@@ -14,10 +14,8 @@ from numpy.testing import assert_allclose, assert_array_equal
 from uplift_cli.output.diagnostics import hint_for
 
 import uplift
-from uplift.colorimetry.observer import display_sensors
 from uplift.common.errors import ColourError
 from uplift.extras.colour import colour_source
-from uplift.extras.colour.srgb import hex_codes
 
 from .conftest import warning_lines
 
@@ -300,17 +298,6 @@ def test_csv_has_the_numbers_of_json_and_of_the_library(ask, run, table, macbeth
     text = run("query --light FL11 --light HP1 --cube", *words).stdout
     assert "unlike the atlas" in text
     assert max(map(len, text.splitlines())) <= 80
-
-
-def test_colours_under_lights_are_those_of_relit_images(ask, macbeth_cube):
-    """sRGB with the white of the light, as looks state them."""
-    cube = uplift.load(macbeth_cube)
-    (screen,) = display_sensors(["FL11"], cube.observer)
-    expected = screen.rgb(cube.reflectance([0.2, 0.1, 0.05]))
-    words = f"query --cube {macbeth_cube} 0.2 0.1 0.05 --light FL11"
-    found = ask(words)["lights"]["FL11"]
-    assert_allclose(found["srgb"], expected, atol=1e-12)
-    assert found["hex"] == hex_codes(expected[None])[0]
 
 
 @pytest.mark.parametrize(
