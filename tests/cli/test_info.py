@@ -31,8 +31,3 @@ def test_options_are_those_of_the_command_line(run, cubes, monkeypatch):
         assert values["limits"] == (380, 780)
         assert values["dim"] == data.lattice.dim
         assert values["model"] == data.model.name
-
-
-def test_default_is_the_packaged_cube(run, ask):
-    assert ask("info")["digest"] == digest(uplift.load().data)
-    assert "packaged cube" in run("info").stdout

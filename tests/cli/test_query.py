@@ -330,10 +330,3 @@ def test_stored_answers_are_checked(
     run("query --cube b.uplift --check answers.csv --tolerance 1")
     (home / "bad.csv").write_text("r,g,b,500\n0.1,0.2,0.3,x\n")
     assert refuse("query --check bad.csv").where == "bad.csv:2"
-
-
-def test_a_hint_names_the_only_cube_of_the_folder(run, home, plain_cube):
-    assert "--cube" not in run("query #cc3319").stderr
-    plain_cube.save(home / "mine.uplift")
-    assert "--cube mine.uplift" in run("query #cc3319").stderr
-    assert "--cube" not in run("query #cc3319 --format json").stderr
