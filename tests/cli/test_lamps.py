@@ -85,6 +85,10 @@ def test_a_texture_names_its_lamp_and_a_changed_lamp_is_another_texture(
     assert refuse(words).code == "texture-differs"
 
 
+def test_a_cube_is_not_built_under_a_lamp(refuse, files):
+    assert refuse("build --dim 3 --illuminant lamp.spd").code == "option"
+
+
 def test_two_lights_of_one_name(refuse, home, files):
     (home / "folder" / "lamp.spd").write_text(LAMP.replace("780\t5", "780\t4"))
     for line in COMMANDS.strip().splitlines():

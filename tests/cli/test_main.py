@@ -332,6 +332,10 @@ def test_progress_off_terminals_is_a_line_now_and_then(monkeypatch, capsys):
     [
         ("info wood.png", "must be an uplift cube, got an image"),
         ("build --atlas {}", "must be a file of spectra, got a cube"),
+        ("plan wood.png", "not UTF-8, but an image"),
+        ("query --check wood.png", "not UTF-8, but an image"),
+        ("query --input .", "error: ."),
+        ("atlas macbet.txt", "'macbeth'"),
         ("build --space nosuch", "; 'uplift help spaces' lists all"),
         ("query 0.1 0.1 0.1 --light 2700", "did you mean '2700K'?"),
         ("build --observer paints.csv", "use --space camera"),

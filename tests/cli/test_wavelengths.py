@@ -25,3 +25,9 @@ def test_orders_of_the_channels(answer):
     assert_allclose(four, [456.4, 490.9, 557.7, 631.4], atol=0.1)
     cones = answer("--orders 3 2 1 --channels cones --light C --plot a.png")
     assert cones["wavelengths"] != found["wavelengths"]
+
+
+def test_table_and_plot(run, home, macbeth):
+    words = "lab wavelengths --count 4 --light A --method bins --plot a.png --atlas"
+    run(words, macbeth)
+    assert (home / "a.png").read_bytes().startswith(b"\x89PNG")
