@@ -134,17 +134,12 @@ def atlases(draw):
         wavelengths = np.unique([*wavelengths[::2], 380.5, wavelengths[-1]])
     size = len(wavelengths)
     reflectances = st.lists(st.floats(-0.05, 1.0), min_size=size, max_size=size)
-    return Atlas(
-        tuple(
-            Entry(
-                name,
-                wavelengths,
-                np.array(draw(reflectances)),
-                **{key: draw(TEXTS) for key in STATEMENTS},
-            )
-            for name in draw(st.lists(NAMES, min_size=1, max_size=4, unique=True))
-        )
-    )
+    entries = []
+    for name in draw(st.lists(NAMES, min_size=1, max_size=4, unique=True)):
+        statements = {key: draw(TEXTS) for key in STATEMENTS}
+        values = np.array(draw(reflectances))
+        entries.append(Entry(name, wavelengths, values, **statements))
+    return Atlas(tuple(entries))
 
 
 @settings(max_examples=20)

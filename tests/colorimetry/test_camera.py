@@ -112,38 +112,37 @@ def test_files_of_cameras_are_read(tmp_path, name, text):
     assert observer.sensor(CAMERA, observer=str(path)).space == "mine"
 
 
+BAD_JSON = (
+    "[]",
+    '{"spectral_data": {"index": [], "data": []}}',
+    json_of(["X", "Y", "Z"], ROWS),
+    json_of(["R", "G", "B"], {**ROWS, "700": [1, 2]}),
+    json_of(["R", "G", "B"], {**ROWS, "red": [1, 2, 3]}),
+    json_of(["R", "G", "B"], {}),
+    sampled([400, 700, 5], list(ROWS.values())),
+    sampled([400, 600], list(ROWS.values())),
+    sampled([400, 600, 100], [1, 2]),
+)
+BAD_ROWS = (
+    "",
+    "400,1,,2,3\n700,1,2,3\n",
+    "400,1,2,3,4\n700,1,2,3,4\n",
+    "400,1,2,3\n700,2,3,1\n500,3,1,2\n",
+    "400,1,1,1\n",
+    "400,1,nan,1\n700,1,1,1\n",
+    "900,1,1,1\n1000,1,1,1\n",
+    "400,1,1,1\n700,1,1,1\n",
+    "400,1,0,1\n700,0,1,1\n",
+)
+HEADER = "wavelength,red,green,blue\n"
+
+
 @pytest.mark.parametrize(
     ("name", "text", "code"),
     [
-        *(
-            ("bad.json", text, "option")
-            for text in (
-                "[]",
-                '{"spectral_data": {"index": [], "data": []}}',
-                json_of(["X", "Y", "Z"], ROWS),
-                json_of(["R", "G", "B"], {**ROWS, "700": [1, 2]}),
-                json_of(["R", "G", "B"], {**ROWS, "red": [1, 2, 3]}),
-                json_of(["R", "G", "B"], {}),
-                sampled([400, 700, 5], list(ROWS.values())),
-                sampled([400, 600], list(ROWS.values())),
-                sampled([400, 600, 100], [1, 2]),
-            )
-        ),
-        *(
-            ("bad.csv", header + rows, "option")
-            for header in ("", "wavelength,red,green,blue\n")
-            for rows in (
-                "",
-                "400,1,,2,3\n700,1,2,3\n",
-                "400,1,2,3,4\n700,1,2,3,4\n",
-                "400,1,2,3\n700,2,3,1\n500,3,1,2\n",
-                "400,1,1,1\n",
-                "400,1,nan,1\n700,1,1,1\n",
-                "900,1,1,1\n1000,1,1,1\n",
-                "400,1,1,1\n700,1,1,1\n",
-                "400,1,0,1\n700,0,1,1\n",
-            )
-        ),
+        *(("bad.json", text, "option") for text in BAD_JSON),
+        *(("bad.csv", rows, "option") for rows in BAD_ROWS),
+        *(("bad.csv", HEADER + rows, "option") for rows in BAD_ROWS),
         ("bad.xyz", TABLE, "unknown-name"),
     ],
 )

@@ -8,10 +8,12 @@ import sys
 import tempfile
 import warnings
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from functools import partial
 from itertools import chain
 from pathlib import Path
 from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 
@@ -84,10 +86,12 @@ IMPOSSIBLE = (
 
 def is_possible(writing: SimpleNamespace) -> bool:
     """Whether programs write such tables, and the reader can know it."""
-    return not any(
-        all(getattr(writing, name) in options for name, options in choices.items())
-        for choices in IMPOSSIBLE
-    )
+    return not any(map(partial(has_choices, writing), IMPOSSIBLE))
+
+
+def has_choices(writing: SimpleNamespace, choices: Mapping[str, Any]) -> bool:
+    """Whether all of the named properties are among some options."""
+    return all(getattr(writing, name) in options for name, options in choices.items())
 
 
 def draw(generator: np.random.Generator) -> SimpleNamespace:

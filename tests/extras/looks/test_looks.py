@@ -93,7 +93,7 @@ def test_impossible_look_is_reported_and_recorded():
     red, dusk = cube.data.provenance["looks"]
     (at_a,) = dusk["lights"]
     assert 0.5 < at_a["possible"] <= at_a["delta_e"] < at_a["possible"] + 0.2
-    stored = [row["delta_e"] for look in (red, dusk) for row in look["lights"]]
+    stored = [row["delta_e"] for row in (*red["lights"], *dusk["lights"])]
     assert_allclose(stored, distances(cube, [RED, IMPOSSIBLE]), atol=1e-5)
     assert stored[0] <= 0.1
     assert "look 'dusk'" in str(found[1])

@@ -57,11 +57,12 @@ def test_sample_covers_every_value_of_every_axis():
     assert len(models) == len(design.variants)
 
 
+def values_of(atlas):
+    return np.array([entry.values for entry in atlas])
+
+
 def test_atlases_are_crowded_spiky_and_noisy(sensor):
-    crowded, spiky, noisy = (
-        np.array([entry.values for entry in atlas])
-        for atlas in synthetic_atlases().values()
-    )
+    crowded, spiky, noisy = map(values_of, synthetic_atlases().values())
     assert np.ptp(sensor.rgb(crowded), axis=0).max() < 0.1
     assert (np.abs(np.diff(spiky, axis=1)).max(axis=1) > 0.2).all()
     assert noisy.min() < 0 < 1 < noisy.max()
