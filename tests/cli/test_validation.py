@@ -205,8 +205,9 @@ def test_missing_packages_are_named_before_anything_is_computed_or_written(
 
 def test_every_figure_has_a_line():
     lines = UNPLOTTED.strip().splitlines()
-    words = {line: line.split() for line in lines}
-    options = {(command_of(line), word) for line in lines for word in words[line]}
+    options = set()
+    for line in lines:
+        options.update(itertools.product([command_of(line)], line.split()))
     for path, command in commands(main).items():
         for param in command.params:
             if param.type in (PLOT, FIGURE_PAGE, SHEET):
