@@ -8,6 +8,7 @@ from numpy.testing import assert_allclose
 
 from uplift.colorimetry import observer
 from uplift.colorimetry.delta_e import delta_e_spectra
+from uplift.colorimetry.illuminants import SCENE_LIGHTS
 from uplift.colorimetry.sensor import in_unit_cube
 from uplift.fit.base import learn_base, match_spectra
 from uplift.fit.entries import FittedEntries
@@ -16,7 +17,7 @@ from uplift.fit.problem import Problem
 from uplift.models.model import evaluate
 from uplift.models.moments import Moments, moment_matrix
 
-LIGHTS = tuple(observer.light(name) for name in ("D65", "A", "FL2", "FL11", "LED-B3"))
+LIGHTS = tuple(map(observer.light, SCENE_LIGHTS))
 GRID = observer.grid()
 DARK = np.array(
     [
@@ -27,11 +28,6 @@ DARK = np.array(
         (0, 0.05, 0),
     ]
 )
-
-
-@pytest.fixture(scope="module")
-def problem(sensor):
-    return Problem(sensor, Moments(9), LIGHTS)
 
 
 def entries_of(sensor, measured):

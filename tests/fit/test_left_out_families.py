@@ -6,23 +6,14 @@ from numpy.testing import assert_allclose
 
 import uplift
 from tests.conftest import MACBETH
-from uplift.colorimetry import observer
 from uplift.colorimetry.delta_e import delta_e_spectra
 from uplift.colorimetry.sensor import in_unit_cube
 from uplift.fit import left_out_families as module
 from uplift.fit.families import STAND_IN, Family, shipped_library
 from uplift.fit.left_out_families import leave_out_families
-from uplift.fit.problem import Problem
 from uplift.lookup.errors_under_lights import light_errors
-from uplift.models.moments import Moments
 
-LIGHTS = tuple(observer.light(name) for name in ("D65", "A", "FL2", "FL11", "LED-B3"))
 ONES = (1.0,) * 7
-
-
-@pytest.fixture(scope="module")
-def problem(sensor):
-    return Problem(sensor, Moments(9), LIGHTS)
 
 
 def test_too_few_families_are_no_evidence(problem):
@@ -41,7 +32,7 @@ def test_families_are_thinned_and_those_outside_the_space_are_left_out(
     assert set(left_out.family) == set(range(6))
 
 
-def test_errors_hold_for_families_that_the_cube_does_not_know(sensor):
+def test_errors_hold_for_families_that_the_cube_does_not_know(problem, sensor):
     """Pooled over the families, none of which the cube knows that predicts it."""
     within = []
     for family in shipped_library([STAND_IN]):
@@ -49,7 +40,7 @@ def test_errors_hold_for_families_that_the_cube_does_not_know(sensor):
         measured = family.measured[in_unit_cube(sensor.rgb(family.measured))]
         rgb = np.clip(sensor.rgb(measured), 0, 1)
         answers = cube.reflectance(rgb)
-        for light in LIGHTS[1:]:
+        for light in problem.lights[1:]:
             error = delta_e_spectra(light, answers, measured)[:, None]
             within.append(error <= light_errors(cube.data, light)(rgb))
     shares = np.concatenate(within).mean(axis=0)

@@ -9,22 +9,11 @@ from numpy.testing import assert_allclose
 from tests.conftest import ATLASES
 from uplift.atlas.resampling import resample
 from uplift.atlas.sources import read_atlas
-from uplift.colorimetry import observer
 from uplift.colorimetry.sensor import in_unit_cube
 from uplift.fit.entries import fit_entries
 from uplift.fit.kernel_learning import MIN_ENTRIES
 from uplift.fit.prior import STEEP, _bounded, fit_prior
-from uplift.fit.problem import Problem
 from uplift.models.model import evaluate, reflectance
-from uplift.models.moments import Moments
-
-LIGHT = observer.light("A")
-LIGHTS = tuple(observer.light(name) for name in ("D65", "A", "FL2", "FL11", "LED-B3"))
-
-
-@pytest.fixture(scope="module")
-def problem(sensor):
-    return Problem(sensor, Moments(9), LIGHTS, LIGHT)
 
 
 @pytest.fixture(scope="module")

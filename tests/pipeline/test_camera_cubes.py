@@ -6,12 +6,11 @@ from numpy.testing import assert_allclose
 
 import uplift
 from tests.cube.cube_files import forge
-from tests.helpers import query_xyz, raises
+from tests.helpers import raises
 from uplift.colorimetry import observer
 from uplift.colorimetry.camera import CAMERA
-from uplift.common.errors import ColourError, CubeFileError
+from uplift.common.errors import CubeFileError
 from uplift.cube.file import digest
-from uplift.extras.export.coeff import write_coeff
 from uplift.extras.report.rebuild import rebuild
 
 NIKON = "Nikon 5100 (NPL)"
@@ -63,11 +62,3 @@ def test_forged_channels_that_depend_on_each_other_are_refused(
 
     with raises(CubeFileError, "cube-file"):
         uplift.load(forge(cube.data, tmp_path / "forged.uplift", forged))
-
-
-def test_xyz_are_not_taken_for_raw_values(cube, tmp_path):
-    with raises(ColourError, "camera-without-xyz"):
-        list(query_xyz(cube, [[0.2, 0.2, 0.2]]))
-    with raises(ColourError, "camera-without-xyz"):
-        write_coeff(cube.data, tmp_path / "table.coeff", res=2)
-    assert list(tmp_path.iterdir()) == []
