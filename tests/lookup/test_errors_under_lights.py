@@ -72,16 +72,12 @@ def test_other_halves_are_covered_under_every_light(halves):
     assert (np.abs(off).max(axis=0) <= (0.12, 0.06, 0.06)).all()
 
 
-def test_an_entry_has_its_own_error(small_cube, sensor):
-    data = small_cube.data
+def test_an_entry_has_its_own_error(small_cube):
+    table = small_cube.data.atlas
+    assert_allclose(small_cube.standard_error(table.rgb), table.error, atol=1e-12)
     light = observer.light("FL11")
-    assert_allclose(
-        small_cube.standard_error(data.atlas.rgb), data.atlas.error, atol=1e-12
-    )
-    own = delta_e_spectra(
-        light, small_cube.reflectance(data.atlas.rgb), data.atlas.measured
-    )
-    assert_allclose(small_cube.standard_error(data.atlas.rgb, light), own, atol=1e-6)
+    own = delta_e_spectra(light, small_cube.reflectance(table.rgb), table.measured)
+    assert_allclose(small_cube.standard_error(table.rgb, light), own, atol=1e-6)
 
 
 def test_colours_far_from_all_entries_are_unlike_the_atlas(small_cube, plain_cube):
