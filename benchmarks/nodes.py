@@ -108,7 +108,7 @@ def draw_gradients() -> None:
     light = observer.light(RAMP_LIGHT)
     height, width = PATCH
     down, across = np.meshgrid(np.arange(height), np.arange(width), indexing="ij")
-    codes = np.stack([90 + across, 110 + down, 190 - across], axis=-1).reshape(-1, 3)
+    codes = np.stack([120 + across, 130 + down, 180 - across], axis=-1).reshape(-1, 3)
     rgb = SENSOR.decode(codes.astype(float))
     gradients = [
         _displayed(lookup(cube, rgb) @ light.xyz.T) for lookup in (eight, four)
