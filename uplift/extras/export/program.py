@@ -189,7 +189,8 @@ def compose(
     language = LANGUAGES[style]
     image = table.image()
     overview, calls = read_calls(kind, language.calls)
-    lookup = read_source(f"{kind}.c") + calls
+    located = "" if kind == "lights" else read_source("locate.c")
+    lookup = located + read_source(f"{kind}.c") + calls
     for word, plain in RUNTIME_WORDS.items():
         lookup = lookup.replace(word, plain)
     constants = {f"UP_{key}": value for key, value in table.constants.items()}

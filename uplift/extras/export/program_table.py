@@ -85,7 +85,7 @@ def make_table(data: CubeData, mode: str) -> Table:
     rows[:size, model.count] = tags
     sections: dict[str, Values] = {
         "ENTRIES": data.atlas.spectra.multipliers,
-        "NODES": data.lattice.nodes.astype(np.float32),
+        "CELLS": _cells(data.lattice.nodes.astype(np.float32)),
         "BINS": _bins(data.lattice.nodes.astype(np.float32)),
         "LISTS": lists,
         "BOXES": _boxes(data.entry_boxes),
@@ -101,7 +101,8 @@ def make_table(data: CubeData, mode: str) -> Table:
         "BIN_COUNT": BIN_COUNT,
         "SPECTRA": int(mode == "spectra"),
         "INEXACT": int(data.inexact_cells is not None),
-        "PLACE": 4 if data.inexact_cells is None else 9,
+        "PLACE": 5 if data.inexact_cells is None else 10,
+        "LOADED": 4 if mode == "spectra" else 1,
         **how,
         **offsets,
         **model_constants(model),
@@ -123,13 +124,32 @@ def moved_cells(data: CubeData, mode: str) -> Mask:
 
 
 def concatenate(sections: Mapping[str, Values]) -> tuple[Floats, dict[str, int]]:
-    """Return sections one after the other, filled up with zeros to whole texels, and
-    the index where each begins.
+    """Return sections one after the other, each filled up with zeros to whole texels,
+    and the index where each begins.
     """
-    ends = np.cumsum([section.size for section in sections.values()]).tolist()
-    parts = [section.ravel() for section in sections.values()]
-    numbers = np.concatenate([*parts, np.zeros(-ends[-1] % TEXEL)], dtype=np.float32)
+    parts = [_texels(section.ravel()) for section in sections.values()]
+    ends = np.cumsum([part.size for part in parts]).tolist()
+    numbers = np.concatenate(parts, dtype=np.float32)
     return numbers, dict(zip(sections, [0, *ends], strict=False))
+
+
+def _texels(numbers: Values) -> Values:
+    """Fill numbers up with zeros to whole texels."""
+    return np.pad(numbers, (0, -numbers.size % TEXEL))
+
+
+def _cells(nodes: Floats) -> Floats:
+    """Return the node below each cell of an axis, that above, 2 for the last cell, and
+    the reciprocal of the step, (dim - 1, 4).
+
+    Reciprocals are rounded up: a step times its reciprocal is not below 1.
+    """
+    step = np.diff(nodes)
+    inverse = np.float32(1) / step
+    next_one = np.nextafter(inverse, np.float32(np.inf))
+    inverse = np.where(step * inverse < 1, next_one, inverse)
+    above = np.append(nodes[1:-1], 2)
+    return np.stack([nodes[:-1], above, inverse, 0 * step], axis=-1)
 
 
 def _bins(nodes: Floats) -> Floats:
@@ -190,15 +210,15 @@ def _moving(data: CubeData) -> tuple[dict[str, Values], dict[str, Any]]:
 
 
 def _boxes(boxes: EntryBoxes) -> Floats:
-    """Return centres, the rest that they round off, and reciprocals of distances to the
-    faces, (E, 12); 0 for none.
+    """Return for each axis the centre, the rest that it rounds off, and reciprocals of
+    distances to the faces, (E, 3, 4); 0 for none.
     """
     low, high = boxes.faces
     below = _reciprocal(boxes.rgb - low)
     above = _reciprocal(high - boxes.rgb)
     centre = boxes.rgb.astype(np.float32)
     columns = (centre, boxes.rgb - centre, below, above)
-    return np.concatenate(columns, axis=1).astype(np.float32)
+    return np.stack(columns, axis=-1).astype(np.float32)
 
 
 def _reciprocal(room: Array) -> Array:

@@ -18,7 +18,6 @@
 #define UP_FUNCTION static inline
 #define UP_READS
 #define UP_TABLE
-#define UP_ROW(name, index) const float *name = up_table + (index) * UP_STRIDE
 #include "loops.c"
 #include "numbers.c"
 #include "host.c"
