@@ -10,7 +10,6 @@ import hashlib
 import json
 import sys
 from functools import cached_property
-from itertools import product
 from pathlib import Path
 
 import numpy as np
@@ -151,14 +150,16 @@ class Cube:
             np.searchsorted(self.nodes, at, side="right") - 1, 0, len(self.nodes) - 2
         )
         along = (at - self.nodes[low]) / (self.nodes[low + 1] - self.nodes[low])
-        rows = []
-        weights = []
-        for corner in product((0, 1), repeat=3):
-            red, green, blue = low + corner
-            rows.append(
-                self.row[int((red * len(self.nodes) + green) * len(self.nodes) + blue)]
-            )
-            weights.append(np.where(corner, along, 1 - along).prod())
+        # along the axes in the order of decreasing fractions; red, green, blue if equal
+        order = np.argsort(-along, kind="stable")
+        corners = low + np.concatenate(
+            [np.zeros((1, 3), int), np.eye(3, dtype=int)[order].cumsum(0)]
+        )
+        rows = [
+            self.row[int(number)]
+            for number in corners @ [len(self.nodes) ** 2, len(self.nodes), 1]
+        ]
+        weights = -np.diff(along[order], prepend=1, append=0)
         is_exact = self.arrays["distance"][rows] <= self.threshold
         limits = np.where(is_exact, np.inf, MAX_SIZE)
         value = weights @ self.spectra(

@@ -6,7 +6,6 @@ the geometry of the lattice have one type, values and weights another; float32 f
 moves colours by rounding, in small entry boxes visibly so.
 """
 
-from itertools import product
 from typing import Any, NamedTuple
 
 import jax
@@ -83,7 +82,7 @@ def interpolate(grid: Grid, rgb: jax.Array) -> jax.Array:
     """Interpolate values (n, N) at linear RGB (n, 3) in [0, 1] of the type of the
     nodes.
     """
-    return _with_entries(grid, rgb) if len(grid.candidates) else _trilinear(grid, rgb)
+    return _with_entries(grid, rgb) if len(grid.candidates) else _tetrahedral(grid, rgb)
 
 
 def evaluated_cells(grid: Grid, rgb: jax.Array) -> jax.Array:
@@ -116,9 +115,9 @@ def _with_entries(grid: Grid, rgb: jax.Array) -> jax.Array:
     (`uplift.lattice.entry_boxes`).
     """
     exit_rgb, entry, weight = _box_hits(grid, rgb)
-    return weight[:, None] * _trilinear(grid, exit_rgb) + (1 - weight)[:, None] * _rows(
-        grid.atlas, entry
-    )
+    return weight[:, None] * _tetrahedral(grid, exit_rgb) + (1 - weight)[
+        :, None
+    ] * _rows(grid.atlas, entry)
 
 
 def _box_hits(grid: Grid, rgb: jax.Array) -> tuple[jax.Array, jax.Array, jax.Array]:
@@ -152,16 +151,31 @@ def _box_hits(grid: Grid, rgb: jax.Array) -> tuple[jax.Array, jax.Array, jax.Arr
     return exit_rgb, entry, weight.astype(grid.atlas.dtype)
 
 
-def _trilinear(grid: Grid, rgb: jax.Array) -> jax.Array:
+def _tetrahedral(grid: Grid, rgb: jax.Array) -> jax.Array:
+    """Σ over the corners of `Lattice.tetrahedra` of their weights times their
+    values.
+    """
     low = _cell(grid, rgb)
     start = _rows(grid.nodes, low)
-    # Σ over the corners of the product of t or 1 − t along the axes, times their values
     along = (rgb - start) / (_rows(grid.nodes, low + 1) - start)
-    along = along.astype(grid.lattice.dtype)
-    sides = jnp.stack([1 - along, along])
-    total = jnp.zeros((len(rgb), grid.lattice.shape[1]), dtype=grid.lattice.dtype)
-    for r, g, b in product((0, 1), repeat=3):
-        weight = sides[r, :, 0] * sides[g, :, 1] * sides[b, :, 2]
-        corner = _number(grid, low + jnp.array([r, g, b], dtype=jnp.int32))
-        total += weight[:, None] * _rows(grid.lattice, corner)
-    return total
+    r, g, b = along.astype(grid.lattice.dtype).T
+    dim = len(grid.nodes)
+    red, green, blue = dim * dim, dim, 1
+    largest = jnp.where(
+        r >= g, jnp.where(r >= b, red, blue), jnp.where(g >= b, green, blue)
+    )
+    smallest = jnp.where(
+        r >= g, jnp.where(g >= b, blue, green), jnp.where(r >= b, blue, red)
+    )
+    whole = red + green + blue
+    # Fractions t₁ ≥ t₂ ≥ t₃ of the axes
+    first = jnp.maximum(jnp.maximum(r, g), b)
+    second = jnp.maximum(jnp.minimum(r, g), jnp.minimum(jnp.maximum(r, g), b))
+    third = jnp.minimum(jnp.minimum(r, g), b)
+    corner = _number(grid, low)
+    return (
+        (1 - first)[:, None] * _rows(grid.lattice, corner)
+        + (first - second)[:, None] * _rows(grid.lattice, corner + largest)
+        + (second - third)[:, None] * _rows(grid.lattice, corner + whole - smallest)
+        + third[:, None] * _rows(grid.lattice, corner + whole)
+    )

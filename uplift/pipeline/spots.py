@@ -96,7 +96,7 @@ def _are_known(boxes: EntryBoxes, points: PointTable, rows: Indices) -> Array:
     if not points.present.all():
         for exit_rgb in _exits(boxes, rows):
             corners, _ = boxes.lattice.corners(exit_rgb)
-            known &= points.present[corners].all(axis=1)
+            known &= points.holds(corners)
     return known
 
 

@@ -54,7 +54,7 @@ def check_complete(data: CubeData, name: str) -> None:
     """Raise `OptionError` for a cube that was built for a scene: programs, and pages
     with one, need all nodes.
     """
-    if data.complete_cells is not None:
+    if data.is_sparse:
         problem = (
             f"{name} needs all nodes, but the cube was built for the colours of a scene"
         )

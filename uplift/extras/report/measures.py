@@ -110,16 +110,16 @@ def round_trip_errors(cube: Cube) -> dict[str, Array]:
 
 
 def _random_rgb(data: CubeData) -> Array:
-    """Linear RGB (n, 3), uniform in the cube or, if it is sparse, in its complete
-    cells.
+    """Linear RGB (n, 3), uniform in the cube or, if it is sparse, in the cells whose
+    lowest corners are present.
     """
     random = np.random.default_rng(SEED)
     rgb = random.random((COLOURS, 3))
-    if data.complete_cells is None:
+    if not data.is_sparse:
         return rgb
-    low = data.lattice.position(
-        random.choice(np.flatnonzero(data.complete_cells), COLOURS)
-    )
+    present = data.lattice.position(np.flatnonzero(data.points.present))
+    lowest = present[(present < data.lattice.dim - 1).all(axis=1)]
+    low = random.choice(lowest, COLOURS)
     return data.lattice.nodes[low] + rgb * (
         data.lattice.nodes[low + 1] - data.lattice.nodes[low]
     )
