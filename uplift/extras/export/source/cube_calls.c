@@ -56,6 +56,8 @@ UP_EXPANDED void up_answer_block(
     up_blend(UP_CUBE shape, place, entry, basis, width, total);
 #if UP_INEXACT
     for (int w = 0; w < count && w < width; ++w) total[w] = up_move(UP_CUBE place, wavelengths[w], total[w]);
+#else
+    UP_CAST(void, wavelengths);
 #endif
     up_write(total, count, width, reflectances);
 }
