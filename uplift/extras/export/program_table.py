@@ -25,6 +25,8 @@ COLUMNS = 2048
 """Texels in a row of the table as an image: every graphics card that can run the
 program has textures of this width.
 """
+WARP_NUMBERS = 6
+"""Numbers of the two terms of a warp."""
 MOVES = {
     "LEAST": LEAST,
     "SLOPE": SLOPE,
@@ -226,22 +228,24 @@ def _reciprocal(room: Array) -> Array:
 
 
 def model_constants(model: object) -> dict[str, float]:
-    """Return the model, its wavelength range in nm, and the start and reciprocal length
-    of the warped range.
+    """Return the model, its wavelength range in nm, the terms of its warp, and the
+    start and reciprocal length of the warped range.
     """
     if isinstance(model, Sigmoid):
-        return {"SIGMOIDS": 1, "START": model.start, "END": model.end}
+        return {"SIGMOIDS": 1, "START": model.start, "END": model.end} | _warp(())
     assert isinstance(model, Moments)
     low, high = warped(model.warp, np.array([model.start, model.end])).tolist()
-    terms = list(chain.from_iterable(WARPS[model.warp]))
-    warp = {}
-    if terms:
-        padded = (*terms, 0.0, 0.0, 0.0)[:6]
-        warp = {f"WARP_{number}": value for number, value in enumerate(padded)}
-    constants = {
+    return {
         "SIGMOIDS": 0,
-        "WARPED": int(bool(terms)),
         "START": model.start,
         "END": model.end,
+        "LOW": low,
+        "SCALE": 1 / (high - low),
+        **_warp(tuple(chain.from_iterable(WARPS[model.warp]))),
     }
-    return constants | warp | {"LOW": low, "SCALE": 1 / (high - low)}
+
+
+def _warp(terms: tuple[float, ...]) -> dict[str, float]:
+    padded = (*terms, *[0.0] * WARP_NUMBERS)[:WARP_NUMBERS]
+    words = {f"WARP_{number}": value for number, value in enumerate(padded)}
+    return {"WARPED": int(bool(terms))} | words

@@ -1,6 +1,18 @@
 /* Spectra are 1/2 + deviation(x), where x is a polynomial with the multipliers as coefficients, of an abscissa that follows
    from the wavelength. A shape is what the spectrum of the lattice is evaluated from: UP_SHAPE(name), multipliers of its four
    nodes, or in mode moments of their weighted coefficients. */
+
+/* Wavelengths, evenly or as the eye distinguishes them. */
+UP_FUNCTION float up_warp(UP_READS_CUBE float wavelength)
+{
+    float warped = wavelength;
+    if (UP_WARPED != 0) {
+        warped = UP_WARP_0 * UP_TANH(UP_WARP_1 * (wavelength - UP_WARP_2));
+        warped += UP_WARP_3 * UP_TANH(UP_WARP_4 * (wavelength - UP_WARP_5));
+    }
+    return warped;
+}
+
 #if UP_SIGMOIDS
 
 /* Weighted x / (2 sqrt(1 + x^2)): the sigmoid around 1/2. */
@@ -17,7 +29,7 @@ UP_FUNCTION float up_abscissa(UP_READS_CUBE float wavelength)
 }
 
 /* Set powers of s: those of a wavelength w of `width`, order by order. */
-UP_FUNCTION void up_powers(float s, int w, int width, UP_OUT float basis[UP_COUNT * UP_WIDTH])
+UP_FUNCTION void up_powers(float s, int w, int width, UP_OUT float basis[UP_COUNT * UP_BLOCK])
 {
     basis[w] = s * s;
     basis[width + w] = s;
@@ -58,33 +70,22 @@ UP_FUNCTION float up_deviation(float weight, float x)
 #endif
 }
 
-/* Wavelengths, evenly or as the eye distinguishes them. */
-UP_FUNCTION float up_warp(UP_READS_CUBE float wavelength)
-{
-#if UP_WARPED
-    float low = UP_WARP_0 * UP_TANH(UP_WARP_1 * (wavelength - UP_WARP_2));
-    return low + UP_WARP_3 * UP_TANH(UP_WARP_4 * (wavelength - UP_WARP_5));
-#else
-    return wavelength;
-#endif
-}
-
 /* Phase phi in turns, [-1/2, 1/2]; differences of magnitudes clip it to the range. */
-UP_FUNCTION float up_phase(UP_READS_CUBE float wavelength)
+UP_FUNCTION float up_phase(UP_READS_CUBE float warped)
 {
-    float turn = (up_warp(UP_CUBE wavelength) - UP_LOW) * UP_SCALE - 0.5f;
+    float turn = (warped - UP_LOW) * UP_SCALE - 0.5f;
     return 0.5f * (UP_ABS(turn + 0.5f) - UP_ABS(turn - 0.5f));
 }
 
 /* 2 cos(phi). */
-UP_FUNCTION float up_abscissa(UP_READS_CUBE float wavelength)
+UP_FUNCTION float up_abscissa(UP_READS_CUBE float warped)
 {
-    return 2.0f * up_sine_of_turn(up_phase(UP_CUBE wavelength));
+    return 2.0f * up_sine_of_turn(up_phase(UP_CUBE warped));
 }
 
 /* Set 1, 2 cos(phi), ..., 2 cos(m phi) of a wavelength w of `width`, order by order:
    2 cos(j phi) 2 cos(k phi) = 2 cos(j + k)phi + 2 cos(j - k)phi. */
-UP_FUNCTION void up_powers(float cosine, int w, int width, UP_OUT float basis[UP_COUNT * UP_WIDTH])
+UP_FUNCTION void up_powers(float cosine, int w, int width, UP_OUT float basis[UP_COUNT * UP_BLOCK])
 {
     UP_ARRAY(power, UP_COUNT);
     power[0] = 1.0f;
@@ -114,7 +115,7 @@ UP_FUNCTION float up_argument(UP_READS int first, float cosine)
 
 /* x at a wavelength w of `width`: sum of multipliers from an index times powers, even and odd ones apart. */
 UP_FUNCTION float up_polynomial(
-    UP_IN UP_NUMBERS(multipliers), int first, UP_IN float basis[UP_COUNT * UP_WIDTH], int w, int width)
+    UP_IN UP_NUMBERS(multipliers), int first, UP_IN float basis[UP_COUNT * UP_BLOCK], int w, int width)
 {
     float even = multipliers[first] * basis[w] + multipliers[first + 2] * basis[2 * width + w];
     float odd = multipliers[first + 1] * basis[width + w];
@@ -128,11 +129,28 @@ UP_FUNCTION float up_polynomial(
 
 /* Set the reflectances of multipliers at `width` wavelengths. */
 UP_EXPANDED void up_spectrum(
-    UP_IN UP_NUMBERS(multipliers), UP_IN float basis[UP_COUNT * UP_WIDTH], int width, UP_OUT float total[UP_WIDTH])
+    UP_IN UP_NUMBERS(multipliers), UP_IN float basis[UP_COUNT * UP_BLOCK], int width, UP_OUT float total[UP_BLOCK])
 {
     UP_VECTORISE
     for (int w = 0; w < width; ++w) total[w] = 0.5f + up_deviation(1.0f, up_polynomial(multipliers, 0, basis, w, width));
 }
+
+#ifndef UP_ROW
+
+/* Copy the row of a lattice point, UP_COUNT numbers of its spectrum, its tag, and zeros. */
+UP_FUNCTION void up_load_row(UP_READS int index, int first, UP_OUT float rows[UP_ROOM])
+{
+    UP_UNROLL
+    for (int t = 0; t < UP_STRIDE / 4; ++t) {
+        UP_TEXEL texel = up_texel(UP_TABLE index * (UP_STRIDE / 4) + t);
+        rows[first + 4 * t] = texel.x;
+        rows[first + 4 * t + 1] = texel.y;
+        rows[first + 4 * t + 2] = texel.z;
+        rows[first + 4 * t + 3] = texel.w;
+    }
+}
+
+#endif
 
 #if UP_SPECTRA
 
@@ -144,15 +162,15 @@ UP_FUNCTION int up_seek(UP_READS UP_IN float rgb[3], UP_OUT float place[UP_PLACE
     UP_UNROLL
     for (int node = 0; node < 4; ++node) {
         int index = nodes[node];
-        UP_LOAD(shape, node, UP_ROW_OF(index) * UP_STRIDE);
+        UP_LOAD(shape, node, UP_ROW_OF(index));
     }
     return entry;
 }
 
 /* Set the reflectances of the lattice at `width` wavelengths: the weighted spectra of four nodes. */
 UP_EXPANDED void up_lattice(
-    UP_IN UP_SHAPE(shape), UP_IN float place[UP_PLACE], UP_IN float basis[UP_COUNT * UP_WIDTH], int width,
-    UP_OUT float total[UP_WIDTH])
+    UP_IN UP_SHAPE(shape), UP_IN float place[UP_PLACE], UP_IN float basis[UP_COUNT * UP_BLOCK], int width,
+    UP_OUT float total[UP_BLOCK])
 {
     UP_UNROLL
     for (int node = 0; node < 4; ++node) {
@@ -177,8 +195,8 @@ UP_FUNCTION float up_mix(UP_READS float lattice_weight, int entry, float absciss
 
 /* Set the reflectances of a colour that is located at `width` wavelengths: the mixture of lattice and entry. */
 UP_EXPANDED void up_blend(
-    UP_READS UP_IN UP_SHAPE(shape), UP_IN float place[UP_PLACE], int entry, UP_IN float basis[UP_COUNT * UP_WIDTH], int width,
-    UP_OUT float total[UP_WIDTH])
+    UP_READS UP_IN UP_SHAPE(shape), UP_IN float place[UP_PLACE], int entry, UP_IN float basis[UP_COUNT * UP_BLOCK], int width,
+    UP_OUT float total[UP_BLOCK])
 {
     up_lattice(shape, place, basis, width, total);
     if (entry >= 0)
@@ -189,9 +207,9 @@ UP_EXPANDED void up_blend(
 UP_FUNCTION float up_blend_at(
     UP_READS UP_IN UP_SHAPE(shape), UP_IN float place[UP_PLACE], int entry, float wavelength)
 {
-    UP_ARRAY(basis, UP_COUNT * UP_WIDTH);
-    UP_ARRAY(total, UP_WIDTH);
-    up_powers(up_abscissa(UP_CUBE wavelength), 0, 1, basis);
+    UP_ARRAY(basis, UP_COUNT * UP_BLOCK);
+    UP_ARRAY(total, UP_BLOCK);
+    up_powers(up_abscissa(UP_CUBE up_warp(UP_CUBE wavelength)), 0, 1, basis);
     up_blend(UP_TABLE shape, place, entry, basis, 1, total);
     return total[0];
 }

@@ -14,15 +14,12 @@
    up_multipliers_n(coefficients[n * UP_COUNT], n, multipliers[n * UP_COUNT])
 
    and up_load(path) before all others, if the numbers are in a file. */
-#define UP_NARROW (UP_WIDTH < 4 ? UP_WIDTH : 4)
-#define UP_CHUNK 64
-
 /* Tabulate powers at up to `width` wavelengths in nm; `width` is a constant where this is expanded. */
 UP_EXPANDED void up_tabulate_block(UP_READS_CUBE const float *wavelengths, int count, int width, float *basis)
 {
     float padded[UP_WIDTH];
-    if (count < width) {
-        for (int w = 0; w < width; ++w) padded[w] = w < count ? wavelengths[w] : 0.0f;
+    if (count < width || UP_WARPED != 0) {
+        for (int w = 0; w < width; ++w) padded[w] = w < count ? up_warp(UP_CUBE wavelengths[w]) : 0.0f;
         wavelengths = padded;
     }
     UP_VECTORISE
@@ -97,21 +94,9 @@ UP_FUNCTION void up_evaluate(
         up_evaluate_block(UP_CUBE multipliers, wavelengths + at, count - at, UP_NARROW, reflectances + at);
 }
 
-/* Reflectances of linear RGB at wavelengths in nm; their colour is this RGB, exactly in mode spectra. Clips RGB to [0, 1]. */
-UP_FUNCTION void up_reflectances(UP_READS_CUBE const float rgb[3], const float *wavelengths, int count, float *reflectances)
-{
-    float place[UP_PLACE], basis[UP_COUNT * UP_CHUNK];
-    UP_SHAPE(shape);
-    int entry = up_find(UP_CUBE rgb, place, shape);
-    for (int start = 0; start < count; start += UP_CHUNK) {
-        int some = up_tabulate(UP_CUBE wavelengths + start, count - start, basis);
-        up_answer_all(UP_CUBE shape, place, entry, wavelengths + start, some, basis, reflectances + start);
-    }
-}
-
 #if UP_SPECTRA
 
-/* The same of n colours at the same wavelengths: faster than one by one. */
+/* Reflectances of n colours in linear RGB at the same wavelengths in nm: faster than one by one. */
 UP_FUNCTION void up_reflectances_n(
     UP_READS_CUBE const float *rgb, int n, const float *wavelengths, int count, float *reflectances)
 {
@@ -125,6 +110,12 @@ UP_FUNCTION void up_reflectances_n(
             up_answer_all(UP_CUBE shape, place, entry, wavelengths + start, some, basis, found);
         }
     }
+}
+
+/* The same of one colour; its colour is exactly this RGB. Clips RGB to [0, 1]. */
+UP_FUNCTION void up_reflectances(UP_READS_CUBE const float rgb[3], const float *wavelengths, int count, float *reflectances)
+{
+    up_reflectances_n(UP_CUBE rgb, 1, wavelengths, count, reflectances);
 }
 
 #else
@@ -187,7 +178,19 @@ UP_FUNCTION int up_multipliers_n(const float *coefficients, int n, float *multip
     return failed;
 }
 
-/* Reflectances of n colours at the same wavelengths: faster than one by one. */
+/* Reflectances of linear RGB at wavelengths in nm; their colour is this RGB, approximately. Clips RGB to [0, 1]. */
+UP_FUNCTION void up_reflectances(const float rgb[3], const float *wavelengths, int count, float *reflectances)
+{
+    float place[UP_PLACE], basis[UP_COUNT * UP_CHUNK];
+    UP_SHAPE(shape);
+    int entry = up_find(rgb, place, shape);
+    for (int start = 0; start < count; start += UP_CHUNK) {
+        int some = up_tabulate(wavelengths + start, count - start, basis);
+        up_answer_all(shape, place, entry, wavelengths + start, some, basis, reflectances + start);
+    }
+}
+
+/* The same of n colours at the same wavelengths: faster than one by one. */
 UP_FUNCTION void up_reflectances_n(const float *rgb, int n, const float *wavelengths, int count, float *reflectances)
 {
     int nodes[4], entries[UP_LANES];

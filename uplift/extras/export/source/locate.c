@@ -38,18 +38,20 @@ UP_FUNCTION int up_enter(UP_READS UP_OUT float colour[3])
 }
 
 /* Set the nodes of the tetrahedron in which fractions of a cell lie, and their weights: from the lowest corner a step along
-   each axis, by decreasing fraction, ties in the order red, green, blue. Weights are 1 - t_1, t_1 - t_2, t_2 - t_3, t_3. */
+   each axis, by decreasing fraction, ties in the order red, green, blue. Weights are 1 - t_1, t_1 - t_2, t_2 - t_3, t_3.
+   No branches, which processors could not predict. */
 UP_FUNCTION void up_divide(int corner, UP_IN float t[3], UP_OUT int nodes[4], UP_OUT float place[UP_PLACE])
 {
     int red = UP_DIM * UP_DIM, green = UP_DIM, blue = 1;
-    UP_BOOL red_green = t[0] >= t[1], red_blue = t[0] >= t[2], green_blue = t[1] >= t[2];
-    float most = red_green ? t[0] : t[1], least = red_green ? t[1] : t[0];
+    int red_green = t[0] >= t[1] ? 1 : 0, red_blue = t[0] >= t[2] ? 1 : 0, green_blue = t[1] >= t[2] ? 1 : 0;
+    int green_red = 1 - red_green, blue_red = 1 - red_blue, blue_green = 1 - green_blue;
+    float most = t[0] > t[1] ? t[0] : t[1], least = t[0] > t[1] ? t[1] : t[0];
     float first = most > t[2] ? most : t[2], rest = most > t[2] ? t[2] : most;
     float second = least > rest ? least : rest, third = least > rest ? rest : least;
     nodes[0] = corner;
     nodes[3] = corner + red + green + blue;
-    nodes[1] = nodes[0] + (red_green && red_blue ? red : !red_green && green_blue ? green : blue);
-    nodes[2] = nodes[3] - (!red_green && !red_blue ? red : red_green && !green_blue ? green : blue);
+    nodes[1] = nodes[0] + red * (red_green & red_blue) + green * (green_red & green_blue) + blue * (blue_red & blue_green);
+    nodes[2] = nodes[3] - red * (green_red & blue_red) - green * (red_green & blue_green) - blue * (red_blue & green_blue);
     place[0] = 1.0f - first;
     place[1] = first - second;
     place[2] = second - third;

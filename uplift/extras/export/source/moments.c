@@ -8,7 +8,7 @@ UP_FUNCTION void up_sum_nodes(
     place[9] = 0.0f;
 #endif
     for (int node = 0; node < 4; ++node) {
-        UP_ROW(values, nodes[node]);
+        UP_VALUES(values, nodes[node]);
         for (int k = 0; k < UP_COUNT; ++k) coefficients[k] += place[node] * values[k];
 #if UP_INEXACT
         float tag = UP_ABS(values[UP_COUNT]);
@@ -147,9 +147,11 @@ UP_FUNCTION int up_seek(UP_READS UP_IN float rgb[3], UP_OUT float place[UP_PLACE
 {
     UP_INTS(nodes, 4);
     UP_ARRAY(coefficients, UP_COUNT);
+    UP_ARRAY(multipliers, UP_COUNT);
     int entry = up_locate(UP_TABLE rgb, nodes, place);
     up_sum_nodes(UP_TABLE nodes, place, coefficients);
-    up_multipliers_of(coefficients, shape);
+    up_multipliers_of(coefficients, multipliers);
+    for (int k = 0; k < UP_COUNT; ++k) shape[k] = multipliers[k];
     return entry;
 }
 
