@@ -63,8 +63,7 @@ def of_scene(cube: Cube, count: int) -> Cube:
     """Keep the nodes that a few dark colours need."""
     data = cube.data
     rgb = np.random.default_rng(1).random((count, 3)) ** 2
-    cells = data.lattice.mask(data.lattice.index(data.lattice.cell(rgb)[0]))
-    points = np.flatnonzero(data.entry_boxes.required_points(cells))
+    points = np.flatnonzero(data.entry_boxes.required_points([rgb]))
     return Cube(replace(data, points=data.points.restricted_to(points)))
 
 

@@ -42,6 +42,7 @@ from uplift.extras.export.source import (
     literal,
     name_program,
     read_source,
+    select,
     unroll,
 )
 from uplift.extras.files.outputs import check_outputs
@@ -197,7 +198,7 @@ def compose(
     constants = {f"UP_{key}": value for key, value in table.constants.items()}
     parts = {
         "overview": overview.replace("UP_VEC", language.vector),
-        "program": unroll(lookup, constants).rstrip("\n"),
+        "program": unroll(select(lookup, constants), constants).rstrip("\n"),
         "table": read_source(f"table_{form}.c"),
     }
     text = read_source(f"{kind}_heading.c") + read_source(f"{style}{language.suffix}")

@@ -25,6 +25,10 @@ COLUMNS = 2048
 """Texels in a row of the table as an image: every graphics card that can run the
 program has textures of this width.
 """
+PLACE = 5
+"""Numbers of the place of a colour: weights of four nodes, and that of the lattice."""
+MOVED_PLACE = 10
+"""The same where answers may be moved: how far, from where, and by which share."""
 WARP_NUMBERS = 6
 """Numbers of the two terms of a warp."""
 MOVES = {
@@ -103,8 +107,7 @@ def make_table(data: CubeData, mode: str) -> Table:
         "BIN_COUNT": BIN_COUNT,
         "SPECTRA": int(mode == "spectra"),
         "INEXACT": int(data.inexact_cells is not None),
-        "PLACE": 5 if data.inexact_cells is None else 10,
-        "LOADED": 4 if mode == "spectra" else 1,
+        "PLACE": PLACE if data.inexact_cells is None else MOVED_PLACE,
         **how,
         **offsets,
         **model_constants(model),

@@ -40,7 +40,7 @@ UP_FUNCTION int up_enter(UP_READS UP_OUT float colour[3])
 /* Set the nodes of the tetrahedron in which fractions of a cell lie, and their weights: from the lowest corner a step along
    each axis, by decreasing fraction, ties in the order red, green, blue. Weights are 1 - t_1, t_1 - t_2, t_2 - t_3, t_3.
    No branches, which processors could not predict. */
-UP_FUNCTION void up_divide(int corner, UP_IN float t[3], UP_OUT int nodes[4], UP_OUT float place[UP_PLACE])
+UP_FUNCTION void up_divide(UP_READS_CUBE int corner, UP_IN float t[3], UP_OUT int nodes[4], UP_OUT float place[UP_PLACE])
 {
     int red = UP_DIM * UP_DIM, green = UP_DIM, blue = 1;
     int red_green = t[0] >= t[1] ? 1 : 0, red_blue = t[0] >= t[2] ? 1 : 0, green_blue = t[1] >= t[2] ? 1 : 0;
@@ -105,7 +105,7 @@ UP_FUNCTION int up_locate(UP_READS UP_IN float rgb[3], UP_OUT int nodes[4], UP_O
         for (int axis = 0; axis < 3; ++axis) share[axis] = colour[axis];
         corner = up_enter(UP_TABLE share);
     }
-    up_divide(corner, share, nodes, place);
+    up_divide(UP_CUBE corner, share, nodes, place);
 #if UP_INEXACT
     place[5] = up_tag(UP_TABLE corner);
 #endif
