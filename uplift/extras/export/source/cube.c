@@ -234,7 +234,7 @@ UP_FUNCTION float up_answer(
 {
     float reflectance = up_blend_at(UP_TABLE shape, place, entry, wavelength);
 #if UP_INEXACT
-    reflectance = up_move(UP_TABLE place, wavelength, reflectance);
+    if (place[8] > 0.0f) reflectance = up_move(UP_TABLE place, wavelength, reflectance);
 #endif
     return reflectance;
 }

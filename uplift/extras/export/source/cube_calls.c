@@ -52,7 +52,8 @@ UP_EXPANDED void up_answer_block(
     float total[UP_WIDTH];
     up_blend(UP_CUBE shape, place, entry, basis, width, total);
 #if UP_INEXACT
-    for (int w = 0; w < count && w < width; ++w) total[w] = up_move(UP_CUBE place, wavelengths[w], total[w]);
+    if (place[8] > 0.0f)
+        for (int w = 0; w < count && w < width; ++w) total[w] = up_move(UP_CUBE place, wavelengths[w], total[w]);
 #else
     UP_CAST(void, wavelengths);
 #endif

@@ -103,7 +103,7 @@ UP_FUNCTION UP_FINE up_shorten(
 }
 
 /* Set the change y by which arguments move along the curves of the sensor, so that the answer to a colour has it: the
-   minimum of a convex function [uplift.lookup.refine]. change[3] is how far from 0 and 1 they start. */
+   minimum of a convex function [uplift.lookup.refine]. change[3] is how far from 0 and 1 they start, 0 if they do not move. */
 UP_SELDOM void up_pull(UP_READS UP_IN float rgb[3], UP_OUT float change[4])
 {
     UP_ARRAY(place, UP_PLACE);
@@ -163,6 +163,7 @@ UP_SELDOM void up_pull(UP_READS UP_IN float rgb[3], UP_OUT float change[4])
         }
     }
     for (int k = 0; k < 3; ++k) change[k] = UP_REAL(y[k]);
+    if (change[0] == 0.0f && change[1] == 0.0f && change[2] == 0.0f) change[3] = 0.0f;
 }
 
 /* Replace the tag of a place by the change of answers there. */
@@ -180,19 +181,17 @@ UP_FUNCTION void up_settle(UP_READS UP_IN float rgb[3], UP_OUT float place[UP_PL
 /* Move a reflectance by what `up_settle` set. */
 UP_FUNCTION float up_move(UP_READS UP_IN float place[UP_PLACE], float wavelength, float reflectance)
 {
-    float moved = reflectance;
-    if (place[5] != 0.0f || place[6] != 0.0f || place[7] != 0.0f) {
-        float position = up_clip((wavelength - UP_FIRST) / (UP_STEP * UP_REAL(UP_SAMPLES - 1))) * UP_REAL(UP_SAMPLES - 1);
-        int row = UP_INT(position) < UP_SAMPLES - 1 ? UP_INT(position) : UP_SAMPLES - 2;
-        float share = position - UP_REAL(row), x = up_linear(reflectance, place[8]);
-        for (int k = 0; k < 3; ++k) {
-            int shape = UP_PULL + 6 * row + 3 + k;
-            x += place[5 + k] * ((1.0f - share) * up_number(UP_TABLE shape) + share * up_number(UP_TABLE shape + 6));
-        }
-        moved = 0.5f + up_deviation(1.0f, x);
-#if !UP_SPECTRA
-        moved = (1.0f - place[9]) * reflectance + place[9] * moved;
-#endif
+    float position = up_clip((wavelength - UP_FIRST) / (UP_STEP * UP_REAL(UP_SAMPLES - 1))) * UP_REAL(UP_SAMPLES - 1);
+    int row = UP_INT(position) < UP_SAMPLES - 1 ? UP_INT(position) : UP_SAMPLES - 2;
+    float share = position - UP_REAL(row), x = up_linear(reflectance, place[8]);
+    for (int k = 0; k < 3; ++k) {
+        int shape = UP_PULL + 6 * row + 3 + k;
+        x += place[5 + k] * ((1.0f - share) * up_number(UP_TABLE shape) + share * up_number(UP_TABLE shape + 6));
     }
+    float moved = 0.5f + up_deviation(1.0f, x);
+#if UP_SPECTRA
     return moved;
+#else
+    return (1.0f - place[9]) * reflectance + place[9] * moved;
+#endif
 }

@@ -1,7 +1,11 @@
 
 /* Lookups follow, the source of the programs that `uplift export` writes, once for each of a few numbers of coefficients.
    Others are filled up with zeros, which have the same spectrum. */
+#if defined(__GNUC__) && !defined(__clang__)
+#define UP_FUNCTION UP_EXPANDED /* gcc would not expand all in a file of so many */
+#else
 #define UP_FUNCTION static inline
+#endif
 #if defined(__GNUC__)
 #define UP_SELDOM static __attribute__((noinline))
 #define UP_UNUSED __attribute__((unused))
