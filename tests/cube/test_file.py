@@ -1,7 +1,6 @@
 """Cube files: everything written is read back, and all other files are refused."""
 
 import dataclasses
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -9,20 +8,17 @@ from safetensors.numpy import save_file
 
 from tests.cube.cube_files import forge, header_length, with_header
 from tests.cube.hand_made import with_outside
-from tests.cube.test_round_trip import assert_same
 from tests.helpers import raises
 from uplift.common.errors import CubeFileError, OutputError
 from uplift.cube.container import KEY
 from uplift.cube.file import VERSION, read, write
 from uplift.cube.schema import ARRAYS, MAX_LIGHTS, METADATA
 from uplift.lattice.point_table import Status
-from uplift.models.moments import Moments
 
 FLIPS = 500
 CUTS = 60
 STORED = [name for name in ARRAYS if name not in ("points", "sensor.sensitivities")]
 """Arrays of the cube of these tests."""
-FORMAT_3 = Path(__file__).parent / "format-3.uplift"
 
 
 @pytest.fixture
@@ -343,19 +339,6 @@ def test_unknown_provenance_of_later_versions_is_kept(data, tmp_path):
         lambda tensors, metadata: metadata["provenance"].update(later=later),
     )
     assert read(path).provenance["later"] == later
-
-
-def test_a_cube_of_format_3_is_read_and_written_in_the_present_format(tmp_path):
-    """Its entries have as many coefficients as its nodes."""
-    data = read(FORMAT_3)
-    assert data.atlas.spectra.model == data.model == Moments(9, 380.0, 780.0)
-    assert data.atlas.spectra.coefficients is data.atlas.coefficients
-    assert len(data.atlas.names) == 23
-    write(data, tmp_path / "cube.uplift")
-    assert_same(read(tmp_path / "cube.uplift"), data)
-    assert (
-        f'\\"version\\":{VERSION}'.encode() in (tmp_path / "cube.uplift").read_bytes()
-    )
 
 
 @pytest.mark.parametrize(

@@ -151,26 +151,38 @@ def colours_in(data, cell, count=400):
 
 def missing(data, required):
     """Count colours that are answered from nodes other than those that ``required``
-    returns for their cell.
+    returns for them.
     """
     count = 0
     for cell in np.unique(data.entry_boxes.cells[0])[::3]:
-        mask = np.zeros(data.lattice.size, dtype=bool)
-        mask[cell] = True
-        nodes = around(data, colours_in(data, cell))
-        count += int(
-            (~required(mask)[nodes.points] & (nodes.weights > 0)).any(axis=1).sum()
-        )
+        rgb = colours_in(data, cell)
+        nodes = around(data, rgb)
+        count += int((~required(rgb)[nodes.points]).any(axis=1).sum())
     return count
 
 
+def required_points(data):
+    return lambda rgb: data.entry_boxes.required_points([rgb])
+
+
 @pytest.mark.parametrize("name", ["small_cube", "macbeth_cube"])
-def test_required_points_answer_every_colour_of_a_cell(request, name):
+def test_required_points_answer_their_colours(request, name):
     data = request.getfixturevalue(name).data
-    assert missing(data, data.entry_boxes.required_points) == 0
-    assert (
-        missing(data, data.lattice.corner_points) > 0
-    )  # entry boxes need other points than the corners
+    assert missing(data, required_points(data)) == 0
+    # entry boxes need other points than the corners around a colour
+    assert missing(data, lambda rgb: data.lattice.needed(rgb, MARGIN)[1]) > 0
+
+
+def test_required_points_allow_for_rounding_of_the_colours(plain_cube):
+    random = np.random.default_rng(4)
+    rgb = random.random((60, 3))
+    rgb[:20] = rgb[:20, :1]  # greys lie on the edge between six tetrahedra
+    rgb[20:40, 2] = plain_cube.data.lattice.nodes[3]
+    required = plain_cube.data.entry_boxes.required_points([rgb])
+    moved = np.clip(rgb + random.uniform(-MARGIN, MARGIN, (50, 60, 3)), 0, 1)
+    corners, _ = plain_cube.data.lattice.corners(moved.reshape(-1, 3))
+    assert required[corners].all()
+    assert required.sum() < 8 * len(rgb)
 
 
 @pytest.mark.parametrize("node", [0, 3, 7])
@@ -185,4 +197,4 @@ def test_required_points_allow_for_rounding_across_faces_on_nodes(plain_cube, no
     )
     data = replace(data, atlas=one)
     assert data.entry_boxes.cells[0].size
-    assert missing(data, data.entry_boxes.required_points) == 0
+    assert missing(data, required_points(data)) == 0

@@ -17,7 +17,7 @@ from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Array, Indices, Mask
 from uplift.common.errors import OptionError
 from uplift.common.text import pluralise
-from uplift.lattice.entry_boxes import EntryBoxes, OutsideBoxes
+from uplift.lattice.entry_boxes import MARGIN, EntryBoxes, OutsideBoxes
 from uplift.lattice.lattice import Lattice
 from uplift.lattice.point_table import PointTable
 from uplift.models.model import Model, evaluate
@@ -231,7 +231,8 @@ class CubeData:
         """Return the absent nodes that linear RGB (n, 3) need, or all absent nodes."""
         absent = ~self.points.present
         if rgb is not None:
-            absent &= self.entry_boxes.required_points([rgb])
+            evaluated = self.entry_boxes.nodes(rgb).lattice_rgb(rgb)
+            absent &= self.lattice.needed(evaluated, MARGIN)[1]
         return np.flatnonzero(absent)
 
     def smoothed_multipliers(self, points: Indices) -> Array:

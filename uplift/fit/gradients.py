@@ -31,7 +31,7 @@ SLIGHT_EXCESS = 0.6
 """The same in L*a*b* between corners, below which no step of a cell breaks the law."""
 ROUNDS = 8
 """Shipped sets need up to four in sRGB."""
-MAX_PASSES = 32
+MAX_PASSES = 8
 SLAB = 1 << 15
 """Cells whose corners are evaluated at a time."""
 BLOCK = 1 << 10

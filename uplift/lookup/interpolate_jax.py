@@ -158,24 +158,33 @@ def _tetrahedral(grid: Grid, rgb: jax.Array) -> jax.Array:
     low = _cell(grid, rgb)
     start = _rows(grid.nodes, low)
     along = (rgb - start) / (_rows(grid.nodes, low + 1) - start)
-    r, g, b = along.astype(grid.lattice.dtype).T
+    fractions = along.astype(grid.lattice.dtype).T
     dim = len(grid.nodes)
-    red, green, blue = dim * dim, dim, 1
-    largest = jnp.where(
-        r >= g, jnp.where(r >= b, red, blue), jnp.where(g >= b, green, blue)
-    )
-    smallest = jnp.where(
-        r >= g, jnp.where(g >= b, blue, green), jnp.where(r >= b, blue, red)
-    )
-    whole = red + green + blue
-    # Fractions t₁ ≥ t₂ ≥ t₃ of the axes
-    first = jnp.maximum(jnp.maximum(r, g), b)
-    second = jnp.maximum(jnp.minimum(r, g), jnp.minimum(jnp.maximum(r, g), b))
-    third = jnp.minimum(jnp.minimum(r, g), b)
+    first, second, third = _by_falling(fractions, fractions)
+    one, next_, last = _by_falling(fractions, (dim * dim, dim, 1))
     corner = _number(grid, low)
+    corners = (corner, corner + one, corner + one + next_, corner + one + next_ + last)
+    weights = (1 - first, first - second, second - third, third)
+    total = jnp.zeros((len(rgb), grid.lattice.shape[1]), dtype=grid.lattice.dtype)
+    for place, weight in zip(corners, weights, strict=True):
+        total += weight[:, None] * _rows(grid.lattice, place)
+    return total
+
+
+def _by_falling(fractions: jax.Array, values: Any) -> tuple[jax.Array, ...]:
+    """Values of red, green and blue in the order of falling fractions (3, n).
+
+    Conditions keep the derivatives of one tetrahedron where fractions are equal.
+    """
+    r, g, b = fractions
+    red, green, blue = values
+    where = jnp.where
     return (
-        (1 - first)[:, None] * _rows(grid.lattice, corner)
-        + (first - second)[:, None] * _rows(grid.lattice, corner + largest)
-        + (second - third)[:, None] * _rows(grid.lattice, corner + whole - smallest)
-        + third[:, None] * _rows(grid.lattice, corner + whole)
+        where(r >= g, where(r >= b, red, blue), where(g >= b, green, blue)),
+        where(
+            r >= g,
+            where(g >= b, green, where(r >= b, blue, red)),
+            where(r >= b, red, where(g >= b, blue, green)),
+        ),
+        where(r >= g, where(g >= b, blue, green), where(r >= b, blue, red)),
     )

@@ -173,7 +173,7 @@ def test_the_plan_file_builds_the_cube_whose_cost_was_estimated(planned, plan_fi
         chosen.cube.dim,
         chosen.cube.coefficients,
     )
-    assert (cube.data.complete_cells is not None) == chosen.sparse
+    assert cube.data.is_sparse == chosen.sparse
     cube.save(path.with_suffix(".uplift"))
     pixels = 20 * 20 * chosen.pixel.size(0, int(chosen.cost.samples))
     assert chosen.cost.memory == pytest.approx(
