@@ -1,5 +1,6 @@
 """Exported programs agree with Python, in every language and mode."""
 
+import re
 import subprocess
 from dataclasses import replace
 
@@ -163,10 +164,33 @@ def test_other_phases_in_shaders(warped_cube, check, style):
     check(warped_cube, style, "spectra", colours(warped_cube.data))
 
 
+@pytest.fixture(scope="module")
+def cubes_of_cuda(small_cube):
+    """Cubes of 9 and 17 coefficients, and one whose answers are moved."""
+    many = uplift.build(dim=3, coefficients=17, prior="smooth")
+    return {"9": small_cube, "17": many, "ACEScg": uplift.load("acescg")}
+
+
 @pytest.mark.parametrize("mode", ["spectra", "moments"])
-def test_cuda_compiles_for_graphics_processors(small_cube, tmp_path, mode):
-    write_program(small_cube.data, tmp_path / "cube.cuh", style="cuda", mode=mode)
-    assert ".entry lookup" in run_program.ptx(tmp_path / "cube.cuh")
+@pytest.mark.parametrize("kind", ["9", "17", "ACEScg"])
+def test_all_numbers_of_cuda_are_in_registers(cubes_of_cuda, tmp_path, kind, mode):
+    path = tmp_path / "cube.cuh"
+    write_program(cubes_of_cuda[kind].data, path, style="cuda", mode=mode)
+    for width in (4, 16):
+        found = run_program.registers(path, width)
+        spilled = re.findall(r"(\d+) bytes spill", found)
+        assert spilled
+        assert set(spilled) == {"0"}
+
+
+@pytest.mark.parametrize("mode", ["spectra", "moments"])
+def test_vulkan_compiles_shaders_as_they_are_written(small_cube, tmp_path, mode):
+    """With the binding that macros choose."""
+    path = tmp_path / "cube.glsl"
+    write_program(small_cube.data, path, style="glsl", mode=mode)
+    for binding, macros in ((0, []), (3, ["#define CUBE_BINDING 3"])):
+        text = run_program.compile_vulkan(path, macros)
+        assert f"Binding {binding}" in text
 
 
 OUTSIDE = np.array(

@@ -19,7 +19,7 @@
    and must not be truncated until uplift_close.
 
    Options, to be defined before the implementation:
-   UPLIFT_WIDTH     wavelengths that are evaluated at a time, 16; 4 or 8 if rays have as few
+   UPLIFT_WIDTH     wavelengths that are evaluated at a time, 16; the last few are in groups of four
    UPLIFT_NO_MMAP   read files into memory instead of mapping them
    UPLIFT_NO_FILES  leave uplift_open out, which needs <stdio.h> or mmap
 
