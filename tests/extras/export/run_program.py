@@ -149,13 +149,20 @@ def cuda(path, rgb, wavelengths, form="file"):
 
 
 def registers(path, width):
-    """Compile for a graphics processor, for ``width`` wavelengths. Return what the
-    assembler says about registers.
+    """Compile for a graphics processor, for ``width`` wavelengths. Return the report of
+    the assembler on registers.
     """
     need(NVCC)
     path.with_suffix(".cu").write_text(KERNEL.format(header=path.name))
-    command = f"nvcc -cubin -arch=sm_90 -DCUBE_WIDTH={width} -Xptxas -v -Werror all-warnings"
-    words = [*command.split(), path.with_suffix(".cu"), "-o", path.with_suffix(".cubin")]
+    command = (
+        f"nvcc -cubin -arch=sm_90 -DCUBE_WIDTH={width} -Xptxas -v -Werror all-warnings"
+    )
+    words = [
+        *command.split(),
+        path.with_suffix(".cu"),
+        "-o",
+        path.with_suffix(".cubin"),
+    ]
     done = subprocess.run(words, check=True, capture_output=True, text=True)
     return done.stderr
 

@@ -19,7 +19,13 @@ from uplift.cube.file import FEATURES, VERSION
 from uplift.cube.schema import ARRAYS
 from uplift.extras.export.program import LANGUAGES, read_calls
 from uplift.extras.export.program_table import MOVED_PLACE, MOVES, TEXEL
-from uplift.extras.export.source import literal, name_program, read_source, select, unroll
+from uplift.extras.export.source import (
+    literal,
+    name_program,
+    read_source,
+    select,
+    unroll,
+)
 from uplift.models.moments import MAX_COUNT, WARPS
 
 HEADER = "uplift.h"
@@ -179,7 +185,7 @@ def _choice(kernel: Kernel) -> str:
 
 
 def _location() -> str:
-    """Return the source that finds the nodes of a colour, whatever their spectra."""
+    """Return the source that finds the nodes of a colour, which all kernels share."""
     text = read_source("locate.c")
     return text.replace("UP_STRIDE", "cube->stride").replace("UP_COUNT", "cube->tag")
 

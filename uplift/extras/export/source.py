@@ -66,7 +66,9 @@ def select(text: str, constants: dict[str, Any]) -> str:
     for line in text.splitlines(keepends=True):
         condition = CONDITION.match(line)
         if condition and condition["name"] in constants:
-            open_ones.append(bool(constants[condition["name"]]) != bool(condition["no"]))
+            open_ones.append(
+                bool(constants[condition["name"]]) != bool(condition["no"])
+            )
             continue
         if line.startswith("#if"):
             open_ones.append(None)

@@ -37,7 +37,7 @@ UP_EXPANDED void up_write(const float total[UP_WIDTH], int count, int width, flo
 UP_FUNCTION int up_tabulate(UP_READS_CUBE const float *wavelengths, int count, float basis[UP_COUNT * UP_CHUNK])
 {
     int some = count < UP_CHUNK ? count : UP_CHUNK, at = 0;
-    for (; some - at > 2 * UP_NARROW; at += UP_WIDTH)
+    for (; some - at > UP_NARROW; at += UP_WIDTH)
         up_tabulate_block(UP_CUBE wavelengths + at, some - at, UP_WIDTH, basis + UP_COUNT * at);
     for (; at < some; at += UP_NARROW)
         up_tabulate_block(UP_CUBE wavelengths + at, some - at, UP_NARROW, basis + UP_COUNT * at);
@@ -66,7 +66,7 @@ UP_FUNCTION void up_answer_all(
     const float *basis, float *reflectances)
 {
     int at = 0;
-    for (; count - at > 2 * UP_NARROW; at += UP_WIDTH)
+    for (; count - at > UP_NARROW; at += UP_WIDTH)
         up_answer_block(
             UP_CUBE shape, place, entry, wavelengths + at, count - at, UP_WIDTH, basis + UP_COUNT * at, reflectances + at);
     for (; at < count; at += UP_NARROW)
@@ -89,7 +89,7 @@ UP_FUNCTION void up_evaluate(
     UP_READS_CUBE const float multipliers[UP_COUNT], const float *wavelengths, int count, float *reflectances)
 {
     int at = 0;
-    for (; count - at > 2 * UP_NARROW; at += UP_WIDTH)
+    for (; count - at > UP_NARROW; at += UP_WIDTH)
         up_evaluate_block(UP_CUBE multipliers, wavelengths + at, count - at, UP_WIDTH, reflectances + at);
     for (; at < count; at += UP_NARROW)
         up_evaluate_block(UP_CUBE multipliers, wavelengths + at, count - at, UP_NARROW, reflectances + at);
