@@ -1,6 +1,6 @@
 /* Rows of multipliers stay in the table. */
 #define UP_NARROW (UP_WIDTH < 4 ? UP_WIDTH : 4)
-#define UP_CHUNK 64
+#define UP_CHUNK (4 * UP_WIDTH)
 #define UP_VALUES(name, index) const float *name = UP_ROW(index)
 #define UP_NUMBERS(name) float *name
 #if UP_SPECTRA
