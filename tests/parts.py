@@ -111,13 +111,6 @@ def _open_device() -> None:
     vulkan_device()
 
 
-def _import_blender() -> None:
-    import bpy
-
-    assert bpy.app.version >= (5, 0)
-
-
-BLENDER = Part("Blender as a module", "pip install bpy", _import_blender)
 MITSUBA = Part(
     "Mitsuba 3",
     "pip install '.[mitsuba]'",

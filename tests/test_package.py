@@ -4,7 +4,6 @@ examples run from the wheel.
 
 import re
 import zipfile
-from pathlib import Path
 
 import pytest
 
@@ -72,17 +71,6 @@ def test_the_wheel_has_the_packages_their_data_and_the_licence_alone(
 
 def test_the_source_distribution_has_what_the_wheel_is_built_from(folder, tracked):
     assert source_problems(folder / f"spectral_uplift-{BUILT}.tar.gz", tracked) == []
-
-
-def test_packages_have_files_of_these_kinds(tracked):
-    library = {Path(name).suffix for name in tracked if name.startswith("uplift/")}
-    atlases = {Path(name).suffix for name in tracked if name.startswith("atlases/")}
-    suffixes = (
-        ".c .cpp .css .csv .cxf .cuh .exr .glsl .h .hlsl .j2 .js .mjs .npz .pbrt .png "
-        ".pyi .spd .ti3 .toml .txt .typed .uplift .wasm .xlsx .xml"
-    )
-    assert library == {".py", *suffixes.split()}
-    assert atlases == {".md", ".py", ".txt"}
 
 
 def test_files_too_many_and_too_few_are_named(wheel, tracked):

@@ -32,14 +32,6 @@ def test_bands_beyond_the_data_keep_the_last_value():
     found = on_grid(one(nm, np.linspace(0.2, 0.8, len(nm))), GRID)[0]
     assert_allclose(found[[0, 3]], 0.2, atol=1e-12)
     assert_allclose(found[[-1, -15]], 0.8, atol=1e-12)
-    assert_allclose(on_grid(one(nm, np.full(len(nm), 0.5)), GRID), 0.5, atol=1e-12)
-
-
-def test_averages_have_less_noise():
-    nm = np.arange(360.0, 800.1)
-    noise = np.random.default_rng(1).normal(0, 0.012, (50, len(nm)))
-    found = [on_grid(one(nm, 0.5 + row), GRID)[0] - 0.5 for row in noise]
-    assert np.std(found) < 0.012 / np.sqrt(4.5)
 
 
 @pytest.mark.parametrize(
@@ -51,11 +43,6 @@ def test_wavelengths_that_are_no_sampling_are_points(grid):
     assert_array_equal(
         on_grid(one(nm, values), grid)[0], values[np.array(grid, int) - 380]
     )
-
-
-def test_coarse_data_pass_through_their_samples():
-    values = np.random.default_rng(3).uniform(0, 1, 41)
-    assert_array_equal(on_grid(one(GRID[::2], values), GRID)[0, ::2], values)
 
 
 def test_clips_are_those_of_the_file():

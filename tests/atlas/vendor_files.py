@@ -67,9 +67,9 @@ class Vendor:
     are next to a file of ``wavelengths``.
     """
 
-    format: str
     template: str
     program: str
+    format: str = "table"
     count: int = 6
     percent: bool = False
     skipped: bool = False
@@ -137,96 +137,87 @@ def archive(text: str) -> bytes:
     return buffer.getvalue()
 
 
-TABLE = "table"
 CGATS = "CGATS"
 ENVI = "ENVI spectral library"
 SHEET = "spreadsheet"
 VENDORS = (
-    Vendor(TABLE, "plain_csv.csv", "programs with tables"),
+    Vendor("plain_csv.csv", "programs with tables"),
     Vendor(
-        TABLE,
         "excel_csv.csv",
         "spreadsheets, European",
         encoding="utf-8-sig",
         newline="\r\n",
     ),
-    Vendor(TABLE, "excel_percent.csv", "spreadsheets, cells in percent"),
+    Vendor("excel_percent.csv", "spreadsheets, cells in percent"),
     Vendor(
-        TABLE,
         "excel_unicode_text.txt",
         "Excel, Unicode text",
         percent=True,
         encoding="utf-16",
         newline="\r\n",
     ),
+    Vendor("utf_16_without_mark.txt", "programs for Windows", encoding="utf-16-be"),
+    Vendor("commented.csv", "scripts"),
     Vendor(
-        TABLE, "utf_16_without_mark.txt", "programs for Windows", encoding="utf-16-be"
-    ),
-    Vendor(TABLE, "commented.csv", "scripts"),
-    Vendor(
-        TABLE,
         "konica_minolta.csv",
         "Konica Minolta SpectraMagic",
         percent=True,
         encoding="latin-1",
     ),
-    Vendor(TABLE, "datacolor.txt", "Datacolor", percent=True),
-    Vendor(TABLE, "babelcolor.csv", "BabelColor"),
-    Vendor(TABLE, "lambda_spectrophotometer.csv", "PerkinElmer Lambda", percent=True),
-    Vendor(TABLE, "spd.spd", "Mitsuba", count=1),
-    Vendor(TABLE, "ocean_optics.txt", "Ocean Optics OceanView", count=1, percent=True),
-    Vendor(TABLE, "avantes.txt", "Avantes AvaSoft", count=1, skipped=True),
+    Vendor("datacolor.txt", "Datacolor", percent=True),
+    Vendor("babelcolor.csv", "BabelColor"),
+    Vendor("lambda_spectrophotometer.csv", "PerkinElmer Lambda", percent=True),
+    Vendor("spd.spd", "Mitsuba", count=1),
+    Vendor("ocean_optics.txt", "Ocean Optics OceanView", count=1, percent=True),
+    Vendor("avantes.txt", "Avantes AvaSoft", count=1, skipped=True),
     Vendor(
-        TABLE,
         "spectral_evolution.sed",
         "Spectral Evolution DARWin",
         count=1,
         skipped=True,
     ),
-    Vendor(TABLE, "ecostress.txt", "ECOSTRESS and ASTER libraries", count=1),
-    Vendor(TABLE, "usgs_columns.txt", "USGS library 6", count=1, skipped=True),
-    Vendor(TABLE, "usgs_values.txt", "USGS library 7", count=1, wavelengths=True),
+    Vendor("ecostress.txt", "ECOSTRESS and ASTER libraries", count=1),
+    Vendor("usgs_columns.txt", "USGS library 6", count=1, skipped=True),
+    Vendor("usgs_values.txt", "USGS library 7", count=1, wavelengths=True),
     Vendor(
-        TABLE,
         "detectors.txt",
         "spectrometers with three detectors",
         count=1,
         skipped=True,
     ),
-    Vendor(TABLE, "relab.asc", "RELAB library", count=1, skipped=True),
+    Vendor("relab.asc", "RELAB library", count=1, skipped=True),
     Vendor(
-        TABLE,
         "spectra_vista.sig",
         "Spectra Vista",
         count=1,
         skipped=True,
         newline="\r\n",
     ),
-    Vendor(TABLE, "asd.txt", "ASD ViewSpec", newline="\r\n"),
-    Vendor(TABLE, "perkin_elmer.asc", "PerkinElmer UV WinLab", count=1),
-    Vendor(TABLE, "cary.csv", "Agilent Cary WinUV"),
-    Vendor(TABLE, "pairs_of_columns.csv", "plots in spreadsheets"),
-    Vendor(TABLE, "pairs_on_a_line.csv", "scripts, a line per spectrum"),
-    Vendor(TABLE, "long_table.csv", "programs for statistics"),
-    Vendor(TABLE, "uvprobe.txt", "Shimadzu UVProbe", count=1),
-    Vendor(CGATS, "cgats.txt", "programs with CGATS", percent=True),
+    Vendor("asd.txt", "ASD ViewSpec", newline="\r\n"),
+    Vendor("perkin_elmer.asc", "PerkinElmer UV WinLab", count=1),
+    Vendor("cary.csv", "Agilent Cary WinUV"),
+    Vendor("pairs_of_columns.csv", "plots in spreadsheets"),
+    Vendor("pairs_on_a_line.csv", "scripts, a line per spectrum"),
+    Vendor("long_table.csv", "programs for statistics"),
+    Vendor("uvprobe.txt", "Shimadzu UVProbe", count=1),
+    Vendor("cgats.txt", "programs with CGATS", CGATS, percent=True),
     Vendor(
-        CGATS, "xrite.txt", "X-Rite ProfileMaker", encoding="latin-1", newline="\r\n"
+        "xrite.txt", "X-Rite ProfileMaker", CGATS, encoding="latin-1", newline="\r\n"
     ),
-    Vendor(CGATS, "cgats_spreadsheet.csv", "CGATS saved by spreadsheets", percent=True),
-    Vendor(CGATS, "argyll_ti3.ti3", "ArgyllCMS chartread"),
-    Vendor(CGATS, "argyll_sp.sp", "ArgyllCMS spotread", count=1),
-    Vendor("CxF3", "cxf3.cxf", "X-Rite ColorCert, i1Profiler"),
-    Vendor("IES TM-27-14", "tm27.spdx", "programs with TM-27", count=1),
-    Vendor("JCAMP-DX", "jcamp_points.jdx", "programs with JCAMP-DX", count=1),
-    Vendor("JCAMP-DX", "jcamp_table.dx", "infrared spectrometers", count=1),
-    Vendor("JCAMP-DX", "jcamp_comma.jdx", "programs with decimal commas", count=1),
-    Vendor(ENVI, "envi.hdr", "ENVI, integers", samples=("<i4", 1.0)),
-    Vendor(ENVI, "envi_floats.hdr", "ENVI, floats", samples=(">f8", 1e-8)),
+    Vendor("cgats_spreadsheet.csv", "CGATS saved by spreadsheets", CGATS, percent=True),
+    Vendor("argyll_ti3.ti3", "ArgyllCMS chartread", CGATS),
+    Vendor("argyll_sp.sp", "ArgyllCMS spotread", CGATS, count=1),
+    Vendor("cxf3.cxf", "X-Rite ColorCert, i1Profiler", "CxF3"),
+    Vendor("tm27.spdx", "programs with TM-27", "IES TM-27-14", count=1),
+    Vendor("jcamp_points.jdx", "programs with JCAMP-DX", "JCAMP-DX", count=1),
+    Vendor("jcamp_table.dx", "infrared spectrometers", "JCAMP-DX", count=1),
+    Vendor("jcamp_comma.jdx", "programs with decimal commas", "JCAMP-DX", count=1),
+    Vendor("envi.hdr", "ENVI, integers", ENVI, samples=("<i4", 1.0)),
+    Vendor("envi_floats.hdr", "ENVI, floats", ENVI, samples=(">f8", 1e-8)),
     Vendor(
-        ENVI, "envi_offset.hdr", "ENVI, with a header", samples=(">u4", 1.0), offset=128
+        "envi_offset.hdr", "ENVI with a header", ENVI, samples=(">u4", 1.0), offset=128
     ),
-    Vendor(SHEET, "xlsx.xlsx", "Excel", percent=True),
-    Vendor(SHEET, "ods.ods", "LibreOffice", percent=True),
+    Vendor("xlsx.xlsx", "Excel", SHEET, percent=True),
+    Vendor("ods.ods", "LibreOffice", SHEET, percent=True),
 )
 """All layouts."""

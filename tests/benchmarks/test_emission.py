@@ -27,18 +27,11 @@ def test_every_lamp_is_in_one_family():
 
 def test_a_table_without_a_lamp_has_its_colour_and_not_its_spectrum():
     few = Lamps(("FL11", "FL1"), LAMPS.power[[row("FL11"), row("FL1")]])
-    found = []
-    for group in (str, lambda name: name[:2]):
-        power, expected = predict(few, group, knots=32, rings=4)
-        assert_allclose(
-            chromaticity(power @ RADIOMETRY),
-            chromaticity(few.power @ RADIOMETRY),
-            atol=1e-7,
-        )
-        assert np.abs(power - few.power).max(axis=1)[0] > 0.1
-        assert (expected > 0).all()
-        found.append(power)
-    assert np.abs(found[0] - found[1]).max() > 1e-4
+    power, expected = predict(few, lambda name: name[:2], knots=16, rings=3)
+    found, actual = (chromaticity(lamps @ RADIOMETRY) for lamps in (power, few.power))
+    assert_allclose(found, actual, atol=1e-7)
+    assert np.abs(power - few.power).max(axis=1)[0] > 0.1
+    assert (expected > 0).all()
 
 
 def test_tungsten_is_planckian():

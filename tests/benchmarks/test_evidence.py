@@ -1,15 +1,10 @@
-"""Programs of pages whose computations nothing else tests: matrices of cameras, closed
-cells.
-"""
+"""Matrices of cameras, and printed values of a thesis, as pages have them."""
 
 import numpy as np
-import pytest
 from numpy.testing import assert_allclose
 
-from benchmarks.accuracy import largest
 from benchmarks.cameras import lab_matrix, xyz_matrix
-from benchmarks.representations import closed, enhanced, with_tables_6
-from uplift.extras.papers.representations.samples import xyz_weights
+from benchmarks.representations import with_tables_6
 
 
 def test_known_camera_matrices_are_found_and_keep_white():
@@ -20,24 +15,6 @@ def test_known_camera_matrices_are_found_and_keep_white():
     assert_allclose(lab_matrix(raw, raw @ known.T), known, rtol=1e-6)
     noisy = raw @ known.T + 0.01 * rng.standard_normal((12, 3))
     assert_allclose(lab_matrix(raw, noisy).sum(axis=1), 1, rtol=1e-12)
-
-
-def test_the_largest_error_is_searched_for():
-    starts = np.random.default_rng(0).uniform(0, 0.5, (32, 3))
-    assert largest(lambda rgb: rgb @ [1, 2, -3], starts) == pytest.approx(3, abs=0.05)
-
-
-@pytest.mark.parametrize("count", [8, 32])
-def test_closed_cells_keep_the_white(count):
-    for one in (closed(count), enhanced(count)):
-        white = one.xyz(one.encode_light(np.ones((1, 401))))
-        assert_allclose(white[0], xyz_weights().sum(axis=0), rtol=2e-3)
-
-
-def test_a_sample_on_a_border_counts_twice():
-    line = np.eye(401)[25:26]  # 405 nm: a border of 16 cells, and within one of 15
-    for count, times in ((16, 2), (15, 1)):
-        assert np.count_nonzero(closed(count).encode_light(line)) == times
 
 
 def test_thesis_tables_have_the_printed_values():

@@ -46,11 +46,6 @@ def test_only_stale_questions_are_answered_again(page):
     assert benchmarks.stale("sample-page") == ["first", "wrong", "drawn"]
 
 
-def test_an_unknown_page_is_an_error_before_anything_is_measured(monkeypatch):
-    monkeypatch.setattr(command, "run", lambda *job: pytest.fail("measured"))
-    assert command.main(["atlas-files", "nothing.at.all"]) == 2
-
-
 def test_pages_that_fail_are_named_and_do_not_stop_the_others(monkeypatch):
     measured = {}
     monkeypatch.setattr(command, "UNTIMED", {"trust", "advice"})
@@ -63,9 +58,3 @@ def test_pages_that_fail_are_named_and_do_not_stop_the_others(monkeypatch):
     jobs = command.jobs_of(["peers.ceres", "advice", "trust", "peers.ours"], [])
     assert command.run_all(jobs) == ["advice"]
     assert measured == {"advice": [], "trust": [], "peers": ["ceres", "ours"]}
-
-
-def test_pages_that_share_the_machine_time_nothing():
-    for name in command.UNTIMED & command.pages().keys():
-        path = benchmarks.ROOT / "benchmarks" / f"{name.replace('-', '_')}.py"
-        assert "timing import" not in path.read_text("utf-8")

@@ -8,7 +8,6 @@ from typing import Any
 
 import click
 import pytest
-import uplift_cli.main
 from click.testing import CliRunner, Result
 from uplift_cli.main import main
 from uplift_cli.output import progress
@@ -35,25 +34,17 @@ def home(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 @pytest.fixture
-def shown(monkeypatch: pytest.MonkeyPatch) -> list[click.ClickException]:
-    """Errors that were printed, in order."""
-    errors: list[click.ClickException] = []
-    for owner, name in (
-        (CommandFailure, "show"),
-        (uplift_cli.main, "show_usage_error"),
-    ):
-        monkeypatch.setattr(owner, name, _recorded(getattr(owner, name), errors))
-    return errors
+def shown(monkeypatch: pytest.MonkeyPatch) -> list[CommandFailure]:
+    """Errors of the library that were printed, in order."""
+    errors: list[CommandFailure] = []
+    show = CommandFailure.show
 
-
-def _recorded(
-    show: Callable[..., None], errors: list[click.ClickException]
-) -> Callable[..., None]:
-    def record(error: click.ClickException) -> None:
+    def record(error: CommandFailure) -> None:
         errors.append(error)
         show(error)
 
-    return record
+    monkeypatch.setattr(CommandFailure, "show", record)
+    return errors
 
 
 @pytest.fixture
@@ -80,7 +71,7 @@ def ask(run: Run) -> Callable[..., Any]:
 
 
 @pytest.fixture
-def refuse(run: Run, shown: list[click.ClickException]) -> Callable[..., UpliftError]:
+def refuse(run: Run, shown: list[CommandFailure]) -> Callable[..., UpliftError]:
     """Run ``uplift`` with bad input and return the error, reported on one line that has
     a hint or the constraint.
     """
@@ -89,11 +80,9 @@ def refuse(run: Run, shown: list[click.ClickException]) -> Callable[..., UpliftE
         result = run(*args, code=2, **options)
         assert result.stdout == ""
         failure = shown.pop()
-        assert isinstance(failure, CommandFailure), result.stderr
+        lines = result.stderr.splitlines()
         (line,) = [
-            line
-            for line in result.stderr.splitlines()
-            if not line.startswith(("warning: ", "note: "))
+            line for line in lines if not line.startswith(("warning: ", "note: "))
         ]
         assert line == f"error: {failure.message}"
         assert "; " in line or " must " in line
@@ -104,18 +93,16 @@ def refuse(run: Run, shown: list[click.ClickException]) -> Callable[..., UpliftE
 
 
 @pytest.fixture
-def misuse(run: Run, shown: list[click.ClickException]) -> Callable[..., str]:
-    """Run ``uplift`` with options that do not fit together; return the message of
-    click's usage error.
-    """
+def misuse(run: Run, shown: list[CommandFailure]) -> Callable[..., str]:
+    """Run ``uplift`` with options that do not fit together; return the message."""
 
     def misuse(*args: object, **options: object) -> str:
         result = run(*args, code=2, **options)
         assert result.stdout == ""
-        failure = shown.pop()
-        assert isinstance(failure, click.UsageError), result.stderr
-        assert result.stderr.splitlines()[-1].startswith("error: ")
-        return failure.format_message()
+        assert not shown
+        message = result.stderr.splitlines()[-1]
+        assert message.startswith("error: ")
+        return message
 
     return misuse
 
@@ -123,14 +110,14 @@ def misuse(run: Run, shown: list[click.ClickException]) -> Callable[..., str]:
 def commands(group: click.Group, path: str = "") -> dict[str, click.Command]:
     """Return all commands by their words, subcommands included."""
     found = {}
-    with click.Context(group) as context:
-        for name in group.list_commands(context):
-            command = group.get_command(context, name)
-            assert command is not None
-            words = f"{path} {name}".strip()
-            found[words] = command
-            if isinstance(command, click.Group):
-                found |= commands(command, words)
+    context = click.Context(group)
+    for name in group.list_commands(context):
+        command = group.get_command(context, name)
+        assert command is not None
+        words = f"{path} {name}".strip()
+        found[words] = command
+        if isinstance(command, click.Group):
+            found |= commands(command, words)
     return found
 
 

@@ -5,11 +5,10 @@ import json
 import shutil
 from pathlib import Path
 
-import numpy as np
 import pytest
 
 import uplift
-from tests.helpers import with_points
+from tests.helpers import quiet_build, with_points
 from uplift.cube.file import write
 from uplift.extras.report.regression import LIMITS
 from uplift.lattice.lattice import Lattice
@@ -44,24 +43,6 @@ def modified(home, stored):
     return home / "modified[red].uplift"
 
 
-def test_json_has_measures_and_failures(run, stored, modified):
-    before = modified.read_bytes()
-    good, bad = json.loads(
-        run("check", stored, modified, "--format", "json", code=1).stdout
-    )
-    assert (good["cube"], good["passed"], good["failures"], good["error"]) == (
-        str(stored),
-        True,
-        [],
-        None,
-    )
-    assert good["measures"].keys() == LIMITS.keys()
-    assert good["status"]["stored"] == good["status"]["rebuilt"]
-    assert (bad["cube"], bad["passed"]) == (str(modified), False)
-    assert "spectra_max" in bad["failures"]
-    assert modified.read_bytes() == before
-
-
 @pytest.fixture
 def other_lattice(home, stored):
     """The same cube on another lattice than its options give."""
@@ -72,89 +53,43 @@ def other_lattice(home, stored):
     return home / "lattice.uplift"
 
 
-def reported(result, shown):
-    """Codes and locations of the errors on standard error, one line each."""
-    assert result.stderr.splitlines() == [
-        f"error: {failure.message}" for failure in shown
-    ]
-    return [(failure.error.code, failure.error.where) for failure in shown]
-
-
 def test_failed_cubes_do_not_stop_the_others(
-    run, shown, home, stored, modified, other_lattice, monkeypatch
+    run, shown, home, stored, modified, other_lattice
 ):
-    monkeypatch.setenv(
-        "COLUMNS", "1000"
-    )  # one line for each cube, however long its path is
     (home / "text.uplift").write_text("no cube")
-    result = run(
-        "check none.uplift text.uplift", other_lattice, modified, stored, code=2
-    )
-    verdicts = {
-        line.split()[0]: line.split()[1]
-        for line in result.stdout.splitlines()
-        if ".uplift" in line
-    }
-    failed = dict.fromkeys(
-        ("none.uplift", "text.uplift", str(other_lattice), str(modified)), "FAILED"
-    )
-    assert verdicts == failed | {str(stored): "passed"}
-    assert reported(result, shown) == [
-        ("file-not-found", "none.uplift"),
-        ("not-a-cube", "text.uplift"),
-        ("cube-file", str(other_lattice)),
-    ]
-
-
-def test_json_has_the_errors_of_failed_cubes(run, other_lattice):
-    result = run("check --format json", other_lattice, code=2)
-    (failed,) = json.loads(result.stdout)
-    assert (failed["passed"], failed["failures"], failed["measures"]) == (
-        False,
-        ["cube-file"],
-        {},
-    )
-    assert (failed["error"]["code"], failed["error"]["where"], result.stderr) == (
-        "cube-file",
-        str(other_lattice),
-        "",
-    )
+    cubes = ("none.uplift", "text.uplift", other_lattice.name, modified.name)
+    result = run("check --format json", *cubes, stored.name, code=2)
+    *failed, lattice, bad, good = json.loads(result.stdout)
+    assert [answer["passed"] for answer in failed] == [False, False]
+    assert (lattice["passed"], lattice["measures"]) == (False, {})
+    assert lattice["error"]["code"] == "cube-file"
+    assert lattice["error"]["where"] == other_lattice.name
+    assert (bad["passed"], good["passed"]) == (False, True)
+    assert "spectra_max" in bad["failures"]
+    assert good["measures"].keys() == LIMITS.keys()
+    assert good["status"]["stored"] == good["status"]["rebuilt"]
+    shown.clear()
+    text = run("check", *cubes, stored.name, code=2).stdout
+    assert (text.count("FAILED"), text.count("passed")) == (4, 1)
+    codes = [failure.error.code for failure in shown]
+    assert codes == ["file-not-found", "not-a-cube", "cube-file"]
 
 
 def test_update_replaces_failed_cubes_that_can_be_rebuilt(
     run, shown, stored, modified, other_lattice
 ):
     before = stored.read_bytes()
-    result = run(
-        "check -q --update none.uplift",
-        stored,
-        modified,
-        other_lattice,
-        code=2,
-    )
+    paths = (stored, modified, other_lattice)
+    run("check -q --update none.uplift", *paths, code=2)
     assert [failure.error.code for failure in shown] == ["file-not-found"]
-    assert result.stderr.splitlines()[1:] == [
-        f"{modified}: replaced",
-        f"{other_lattice}: replaced",
-    ]
-    assert (
-        before
-        == stored.read_bytes()
-        == modified.read_bytes()
-        == other_lattice.read_bytes()
-    )
-    run("check", modified, other_lattice)
+    assert [path.read_bytes() for path in paths] == [before] * 3
 
 
-def test_atlases_are_searched_for_in_given_folders(
-    run, shown, home, monkeypatch, macbeth
-):
+def test_atlases_are_searched_for_in_given_folders(run, home, monkeypatch, macbeth):
     monkeypatch.setattr("uplift.extras.report.rebuild.shipped_atlases", tuple)
-    with pytest.warns(uplift.UpliftWarning):
-        uplift.build(macbeth, dim=3, coefficients=4).save(home / "cube.uplift")
-    result = run("check cube.uplift", code=2)
-    assert reported(result, shown) == [("atlas-not-found", "cube.uplift")]
-    assert "macbeth.txt" in shown.pop().error.problem
+    quiet_build(macbeth, dim=3, coefficients=4).save(home / "cube.uplift")
+    (failed,) = json.loads(run("check cube.uplift --format json", code=2).stdout)
+    assert failed["error"]["code"] == "atlas-not-found"
     (home / "there").mkdir()
     shutil.copy(macbeth, home / "there")
     assert "passed" in run("check cube.uplift --atlas-dir there").stdout
@@ -162,39 +97,22 @@ def test_atlases_are_searched_for_in_given_folders(
 
 def test_a_changed_atlas_is_explained_and_the_cube_updated(run, ask, home):
     """One entry has other values and one another name."""
-    wavelengths = list(range(380, 781, 10))
-
-    def write(**entries):
-        rows = [
-            ("name", *wavelengths),
-            *((name, *values) for name, values in entries.items()),
-        ]
-        (home / "mine.csv").write_text(
-            "".join(",".join(map(str, row)) + "\n" for row in rows)
-        )
-
-    red = np.linspace(0.1, 0.6, 41)
-    grey = np.full(41, 0.5)
-    dark = np.full(41, 0.3)
-    write(red=red, grey=grey, dark=dark)
-    uplift.build(home / "mine.csv", dim=9, coefficients=4).save(home / "cube.uplift")
-    assert ask("check cube.uplift")[0]["passed"]
-    text = (home / "mine.csv").read_bytes()
-    (home / "mine.csv").write_bytes(text.replace(b"\n", b"\r\n"))
+    file = home / "mine.csv"
+    text = "name,380,500,600,780\nred,0.1,0.1,0.4,0.6\ngrey,0.5,0.5,0.5,0.5\n"
+    text += "dark,0.3,0.3,0.3,0.3\n"
+    file.write_text(text)
+    uplift.build(file, dim=9, coefficients=4).save(home / "cube.uplift")
+    file.write_text(text, newline="\r\n")
     (answer,) = ask("check cube.uplift")
     assert (answer["passed"], answer["atlas_changed"]) == (True, [])
     assert len(answer["notes"]) == 1
-    write(red=red, grey=grey + 0.02, new=dark)
+    file.write_text(text.replace("0.5", "0.52").replace("dark", "new"))
     (answer,) = ask("check cube.uplift", code=1)
     assert {"atlas-changed", "entries", "delta_e_A"} <= set(answer["failures"])
     changes = {entry["name"]: entry["change"] for entry in answer["entries"]}
     assert changes == {"grey": "moved", "dark": "removed", "new": "added"}
     assert answer["entries"][-1]["delta_e"] > 0.5
-    table = run("check cube.uplift", code=1).stdout.split("limit")[0]
-    assert table.splitlines()[-1].split()[:3] == ["cube.uplift", "FAILED", "atlas"]
-    shown = run("check cube.uplift --update").stdout
-    assert "mine.csv" in shown
-    assert "grey: moved" in shown
+    assert "grey: moved" in run("check cube.uplift --update").stdout
     run("check cube.uplift")
 
 

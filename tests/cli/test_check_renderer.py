@@ -1,35 +1,30 @@
 """``uplift check --kit`` and ``--renderer``."""
 
-import pytest
+import os
 
 from benchmarks.conformance import CUBE, KIT
 from uplift.extras.report.conformance_kit import kit_names
 
 
 def test_a_kit_is_written_and_passes(run, refuse, home):
-    result = run("check --kit kit")
-    assert result.stdout.startswith("kit: conformance.uplift, ")
-    assert {path.name for path in (home / "kit").iterdir()} == set(kit_names())
+    run("check --kit kit")
+    assert set(os.listdir(home / "kit")) == set(kit_names())
     for file in ("reference-A.exr", "spectra.csv"):
         assert "passed" in run("check --renderer", home / "kit" / file).stdout
     assert refuse("check --kit kit").code == "file-exists"
     cube = "kit/conformance.uplift"
     assert refuse("check --kit kit --force", cube).code == "output-is-input"
-    assert refuse("check --kit new none.uplift").code == "file-not-found"
-    assert not (home / "new").exists()
     run("check --kit kit --force")
 
 
 def test_failures_are_explained_and_exit_with_1(run, ask):
     picture = KIT / "reference-FL11.exr"
-    shown = run("check --renderer", picture, CUBE, code=1).stdout
-    assert "FAILED" in shown
-    assert "the light is FL11" in shown
-    found = ask("check --renderer", picture, CUBE, code=1)
+    words = ("check --renderer", picture, CUBE)
+    assert "the light is FL11" in run(*words, code=1).stdout
+    found = ask(*words, code=1)
     assert (found["passed"], found["light"]) == (False, "A")
     assert found["delta_e"]["mean"] > found["limits"]["mean"]
     assert found["explanation"] == "the light is FL11"
-    assert len(found["worst"]) == 5
     assert ask("check --light FL11 --renderer", picture, CUBE)["passed"]
 
 
@@ -38,34 +33,6 @@ def test_a_plot_is_drawn_and_replaces_no_input(run, refuse, home):
     run("check --plot a.png --renderer", picture, CUBE, code=1)
     assert (home / "a.png").read_bytes().startswith(b"\x89PNG")
     assert refuse("check --plot a.png --renderer", picture, CUBE).code == "file-exists"
-    run("check --force --plot a.png --renderer", KIT / "spectra.csv", CUBE)
-    (home / "b.png").write_bytes(picture.read_bytes())
-    words = "check --force --plot b.png --renderer b.png"
-    assert refuse(words, CUBE).code == "output-is-input"
-
-
-def test_files_of_other_kinds_are_refused(refuse, home):
-    assert refuse("check --renderer none.exr", CUBE).where == "none.exr"
-    assert refuse("check --renderer none.csv", CUBE).code == "file-not-found"
-    (home / "a.exr").write_text("no picture")
-    assert refuse("check --renderer a.exr", CUBE).where == "a.exr"
-    assert refuse("check --renderer a.exr none.uplift").code == "file-not-found"
-
-
-@pytest.mark.parametrize(
-    "words",
-    [
-        "check",
-        "check --light A cube.uplift",
-        "check --force cube.uplift",
-        "check --plot a.png cube.uplift",
-        "check --kit kit --plot a.png",
-        "check --kit kit --renderer out.exr",
-        "check --kit kit --light A",
-        "check --renderer out.exr --update",
-        "check --renderer out.exr a.uplift b.uplift",
-    ],
-)
-def test_options_that_do_not_go_together(misuse, home, words):
-    assert misuse(words)
-    assert not any(home.iterdir())
+    words = "check --force --plot a.png --renderer"
+    assert refuse(words, "a.png", CUBE).code == "output-is-input"
+    run(words, KIT / "spectra.csv", CUBE)

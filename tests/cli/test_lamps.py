@@ -1,14 +1,11 @@
 """Files of lamps in place of the names of lights, in every command that takes them."""
 
-import json
 import os
-import shlex
 import shutil
 
 import numpy as np
 import OpenEXR
 import pytest
-from numpy.testing import assert_allclose
 
 from uplift.colorimetry.observer import illuminant_spd
 
@@ -76,28 +73,13 @@ def test_every_light_may_be_a_file(run, refuse, home, files, line):
     assert not is_json or '"lamp"' in result.stdout
 
 
-def test_a_lamp_of_several_and_answers_under_it(ask, files):
-    lights = ask(
-        "query #888 --light two.csv:warm --light lamp.spd --light A",
-    )["lights"]
-    assert list(lights) == ["warm", "lamp", "A"]
-    assert_allclose(lights["lamp"]["srgb"], lights["A"]["srgb"], atol=0.02)
-    assert lights["lamp"]["xyz"] != lights["A"]["xyz"]
-
-
-def test_channels_have_the_name_of_the_lamp(run, home, files):
-    run(
-        "texture wood.png -o x.exr --cube cube.uplift --errors lamp.spd",
-    )
-    with OpenEXR.File(str(home / "x.exr"), separate_channels=True) as file:
-        assert "error.lamp" in file.channels()
-        settings = json.loads(file.header()["uplift.texture"])
-    assert settings["lamps"][0]["name"] == "lamp"
-
-
-def test_a_changed_lamp_is_another_texture(run, refuse, home, files):
+def test_a_texture_names_its_lamp_and_a_changed_lamp_is_another_texture(
+    run, refuse, home, files
+):
     words = "texture wood.png -o x.exr --cube cube.uplift --errors lamp.spd --resume"
     run(words)
+    with OpenEXR.File(str(home / "x.exr"), separate_channels=True) as file:
+        assert "error.lamp" in file.channels()
     run(words)
     (home / "lamp.spd").write_text(LAMP.replace("780\t5", "780\t4"))
     assert refuse(words).code == "texture-differs"
@@ -110,48 +92,25 @@ def test_a_cube_is_not_built_under_a_lamp(refuse, files):
 def test_two_lights_of_one_name(refuse, home, files):
     (home / "folder" / "lamp.spd").write_text(LAMP.replace("780\t5", "780\t4"))
     for line in COMMANDS.strip().splitlines():
-        if "export" in line:
-            continue
-        option = "--also" if "--also" in line else "--light"
-        if option in line:
+        if "--light" in line and "export" not in line:
             words = line.replace("{}", "lamp.spd", 1).replace("{}", "A").split()
-            other = f"folder/lamp.spd{':#997788' * (option == '--also')}"
-            assert refuse(*words, option, other).code == "option", line
-
-
-@pytest.mark.parametrize(
-    "words",
-    [
-        "texture wood.png --errors {} --errors {}",
-        "relight wood.png --light A --light {} --light {}",
-    ],
-)
-def test_two_lamps_of_one_channel(refuse, home, files, words):
-    for name in ("a b", "a_b"):
-        shutil.copy(home / "lamp.spd", home / f"{name}.spd")
-    words = shlex.split(words.format("'a b.spd'", "a_b.spd"))
-    assert refuse(*words, "-o", "x.exr", "--cube", "cube.uplift").code == "option"
+            error = refuse(*words, "--light", "folder/lamp.spd")
+            assert error.code == "option", line
 
 
 def test_passes_know_a_lamp_by_its_spectrum(run, ask, home, files):
     """The lamp of the passes has the spectrum of A."""
     passes = home / "passes.toml"
     passes.write_text(passes.read_text().replace('name = "A"', 'name = "lamp"'))
-    nm = np.arange(300, 831, 5)
-    rows = zip(nm, illuminant_spd("A", 300, 830, 5), strict=True)
-    text = "".join(f"{at} {power!r}\n" for at, power in rows)
-    (home / "folder" / "lamp.spd").write_text(text)
+    rows = np.column_stack([np.arange(300, 831, 5), illuminant_spd("A", 300, 830, 5)])
+    np.savetxt(home / "folder" / "lamp.spd", rows, "%.17g")
     shown = ask("passes info passes.toml --light folder/lamp.spd")
-    numbers = shown["lights"]["lamp"]["numbers"]
-    assert shown["other_lights"]["lamp"] == numbers
-    result = run("passes info passes.toml --light lamp.spd --format json")
-    (warning,) = warning_lines(result)
+    assert shown["other_lights"]["lamp"] == shown["lights"]["lamp"]["numbers"]
+    (warning,) = warning_lines(run("passes info passes.toml --light lamp.spd"))
     assert "another spectrum" in warning
-    others = json.loads(result.stdout)["other_lights"]["lamp"]
-    assert np.abs(np.subtract(others, numbers)).max() > 0.1
 
 
-def test_scenes_name_lamps(ask, run, refuse, home, files):
+def test_scenes_name_lamps(ask, refuse, home, files):
     scene = home / "scene.toml"
     scene.write_text(
         'textures = ["wood.png"]\natlases = ["two.csv"]\nlights = ["lamp.spd", '
@@ -163,13 +122,9 @@ def test_scenes_name_lamps(ask, run, refuse, home, files):
     plan = ask("plan scene.toml --quick")
     assert plan["scene"]["lights"] == ["lamp", "A"]
     assert refuse("plan scene.toml -o lamp.spd --force").code == "output-is-input"
-    if plan["build"]:
-        assert not warning_lines(run("build --plan scene.plan.json"))
     for lights in ('"card.csv"', '"none.spd"', '"../lamp.spd"', '"folder"', "3"):
         scene.write_text(f'textures = ["wood.png"]\nlights = [{lights}]\n')
         assert refuse("plan scene.toml -o x.json").where == "scene.toml"
-    scene.write_text('textures = ["wood.png"]\nlamp_files = []\n')
-    assert refuse("plan scene.toml").code == "invalid-file"
 
 
 def test_palettes_name_lamps(ask, refuse, home, files):
@@ -181,11 +136,9 @@ def test_palettes_name_lamps(ask, refuse, home, files):
     for name in ("lamp.spd", "two.csv:warm"):
         palette.write_text(text.format(name))
         assert ask("lab palette palette.toml")
-        assert (
-            refuse("lab palette palette.toml --force -o", name.partition(":")[0]).code
-            == "output-is-input"
-        )
+        file = name.partition(":")[0]
+        error = refuse("lab palette palette.toml --force -o", file)
+        assert error.code == "output-is-input"
     for name in ("card.csv", "none.spd", "../lamp.spd", "two.csv", "D66"):
         palette.write_text(text.format(name))
-        code = refuse("lab palette palette.toml -o x.csv").code
-        assert code in ("not-a-lamp", "atlas", "unknown-name", "invalid-file")
+        refuse("lab palette palette.toml -o x.csv")

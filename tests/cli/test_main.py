@@ -6,7 +6,6 @@ import ast
 import errno
 import json
 import re
-import subprocess
 import sys
 import time
 import warnings
@@ -30,6 +29,7 @@ from uplift_cli.startup import _respell
 
 import uplift
 from tests.conftest import ROOT
+from tests.helpers import output_of
 from uplift.colorimetry.gamut import METHODS
 from uplift.common.errors import UpliftError, UpliftWarning
 from uplift.common.progress import Progress
@@ -37,7 +37,7 @@ from uplift.common.text import printable
 from uplift.lookup.interpolate import MODES
 from uplift.samples import sample_path
 
-from .conftest import commands, warning_lines
+from .conftest import commands
 
 
 def test_help_lists_what_is_used_every_week_on_one_screen(run, monkeypatch):
@@ -45,67 +45,35 @@ def test_help_lists_what_is_used_every_week_on_one_screen(run, monkeypatch):
     lines = run("--help").stdout.splitlines()
     assert len(lines) <= 24
     assert [line.split()[0] for line in lines[4:]] == list(COMMANDS)
-    assert lines[4].startswith("  build ")
-    below = run("lab").stdout.splitlines()
+    below = run("lab").stdout
     for name in SUMMARIES:
-        assert sum(line.startswith(f"  {name} ") for line in below) == 1
+        assert below.count(f"\n  {name} ") == 1
     assert run("--version").stdout == f"uplift {uplift.__version__}\n"
 
 
 @pytest.mark.parametrize("command", ["build", "export"])
 def test_help_shows_the_options_of_every_day_and_help_all_shows_all(run, command):
-    short = run(f"{command} --help").stdout
-    full = run(f"{command} --help-all").stdout
-    shown = set(re.findall(r"(?<!\S)--\S+", short))
-    assert {"--output", "--force", "--help", "--help-all"} <= shown
-    assert shown < set(re.findall(r"(?<!\S)--\S+", full))
-    for param in COMMANDS_BY_PATH[command].params:
-        if isinstance(param, click.Option):
-            assert param.opts[-1] in full
+    short, full = (
+        set(re.findall(r"(?<!\S)--\S+", run(f"{command} {option}").stdout))
+        for option in ("--help", "--help-all")
+    )
+    assert {"--output", "--force", "--help", "--help-all"} <= short
+    assert short < full
 
 
-@pytest.mark.parametrize(
-    ("args", "words"),
-    [
-        ("paint", "No such command"),
-        ("txture", "Did you mean 'texture'?"),
-        ("build --dimm 8", "Did you mean '--dim'?"),
-        ("help mods", "neither a topic nor a command"),
-        ("query", "Give colours"),
-        ("build --dim many", "neither a whole number nor 'auto'"),
-        ("info a b", "unexpected extra argument"),
-    ],
-)
-def test_wrong_usage_is_one_line_with_exit_code_2(misuse, args, words):
-    assert words in misuse(args)
-
-
-@pytest.mark.parametrize(
-    "line", ["samples ''", "texture a.png -o ''", "query 1 1 1 --plot=", "help ''"]
-)
-def test_empty_values_are_refused(misuse, home, line):
-    assert "must not be empty" in misuse(line)
-    assert not list(home.iterdir())
-
-
-@pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])
 @pytest.mark.parametrize(
     ("words", "expected"),
     [
         ("uplift tex", "texture"),
-        ("uplift build --atlas mac", "macbeth"),
         ("uplift build --observer Nik", "Nikon 5100 (NPL)"),
         ("uplift info sr", "srgb"),
     ],
 )
-def test_shells_complete_names(run, monkeypatch, shell, words, expected):
+def test_shells_complete_names(run, monkeypatch, words, expected):
     monkeypatch.setenv("COMP_WORDS", words)
-    monkeypatch.setenv(
-        "COMP_CWORD",
-        words.rsplit(" ", 1)[-1] if shell == "fish" else str(len(words.split()) - 1),
-    )
-    result = run(env={"_MAIN_COMPLETE": f"{shell}_complete"}, prog_name="main")
-    assert expected in result.stdout.replace(",", "\n").replace("\t", "\n").splitlines()
+    monkeypatch.setenv("COMP_CWORD", str(len(words.split()) - 1))
+    result = run(env={"_MAIN_COMPLETE": "bash_complete"}, prog_name="main")
+    assert f"plain,{expected}" in result.stdout.splitlines()
 
 
 @pytest.fixture
@@ -122,75 +90,52 @@ def failing(monkeypatch):
 
 
 def test_errors_are_one_line_with_the_hint_of_the_command_line(failing, run):
-    failing(
-        UpliftError(
-            "is bad", code="no-such-code", path="x", line=3, hint="make it good"
-        )
+    error = UpliftError(
+        "exists already", code="file-exists", path="x", line=3, hint="pass force=True"
     )
+    failing(error)
     result = run("info x", code=2)
-    assert (result.stdout, result.stderr) == ("", "error: x:3: is bad; make it good\n")
-    failing(
-        UpliftError(
-            "exists already", code="file-exists", path="x", hint="pass force=True"
-        )
-    )
-    hint = "pass --force"
-    assert run("info x", code=2).stderr == f"error: x: exists already; {hint}\n"
+    assert result.stdout == ""
+    assert result.stderr == "error: x:3: exists already; pass --force\n"
     result = run("info x --format json", code=2)
-    assert (result.stdout, result.stderr.count("\n")) == ("", 1)
-    fields = {
+    assert result.stdout == ""
+    assert json.loads(result.stderr)["error"] == {
         "code": "file-exists",
-        "where": "x",
+        "where": "x:3",
         "problem": "exists already",
-        "hint": hint,
+        "hint": "pass --force",
     }
-    assert json.loads(result.stderr) == {"error": fields}
 
 
 @pytest.mark.parametrize(
     "bug",
     [
         RuntimeError("a bug\nof two lines\x1b[2J"),
-        ZeroDivisionError(),
         UnicodeEncodeError("utf-8", "\udcff", 0, 1, "x"),
     ],
 )
 def test_internal_errors_are_one_line_with_exit_code_70(failing, run, monkeypatch, bug):
     monkeypatch.delenv("UPLIFT_TRACEBACK")
     failing(bug)
-    result = run("info x", code=70)
-    assert result.stdout == ""
-    assert result.stderr.startswith(
-        f"error: internal error, please report it: {type(bug).__name__} in "
-        "test_main.py:"
-    )
-    assert result.stderr == printable(result.stderr[:-1]) + "\n"
+    message = run("info x", code=70).stderr
+    assert f"please report it: {type(bug).__name__} in test_main.py:" in message
+    assert message == printable(message[:-1]) + "\n"
     result = run("info x --format json", code=70)
     assert json.loads(result.stderr)["error"]["code"] == "internal-error"
     assert CliRunner().invoke(main, ["--traceback", "info", "x"]).exception is bug
 
 
-@pytest.mark.parametrize("name", ["jax", "numpy"])
-def test_packages_that_are_too_old_are_named(failing, refuse, monkeypatch, name):
-    version = metadata.version
-    monkeypatch.setattr(
-        metadata, "version", lambda other: "0.9.9" if other == name else version(other)
-    )
+def test_packages_that_are_too_old_are_named(failing, refuse, monkeypatch):
+    monkeypatch.setattr(metadata, "version", lambda name: "0.9.9")
     failing(AttributeError("a name of later versions"))
-    error = refuse("info x")
-    assert error.code == "package-too-old"
-    assert error.problem.startswith(f"{name} must be ")
+    assert refuse("info x").code == "package-too-old"
 
 
 @pytest.mark.parametrize(
     ("error", "code"),
     [
         (MemoryError(), "out-of-memory"),
-        (
-            RuntimeError("RESOURCE_EXHAUSTED: Out of memory allocating 9 bytes."),
-            "out-of-memory",
-        ),
-        (PermissionError(13, "Permission denied", "x"), "output"),
+        (RuntimeError("RESOURCE_EXHAUSTED: Out of memory"), "out-of-memory"),
         (OSError(errno.ENOSPC, "No space left on device"), "output"),
     ],
 )
@@ -202,58 +147,39 @@ def test_failures_of_the_system_are_errors(failing, refuse, error, code):
 def test_warnings_of_the_library_are_one_line_each_and_others_are_ignored(
     monkeypatch, run
 ):
+    cube = uplift.load()
+
     def load(path):
-        warnings.warn(
-            UpliftWarning("is left out", code="entry-skipped", entry="a"), stacklevel=2
-        )
+        skipped = UpliftWarning("is left out", code="entry-skipped", entry="a")
+        warnings.warn(skipped, stacklevel=2)
         with warnings.catch_warnings():
             warnings.simplefilter("always")
             warnings.warn("internal", RuntimeWarning, stacklevel=2)
         return cube
 
-    cube = uplift.load()
     monkeypatch.setattr("uplift.lookup.cube.load", load)
     before = warnings.showwarning
-    result = run("info")
-    assert warning_lines(result) == [
-        f"entry 'a': is left out; {HINTS['entry-skipped']}"
-    ]
-    assert result.stderr.count("\n") == 1
+    warning = f"warning: entry 'a': is left out; {HINTS['entry-skipped']}\n"
+    assert run("info").stderr == warning
     assert warnings.showwarning is before
 
 
 COMMANDS_BY_PATH = commands(main)
 
 
-@pytest.mark.parametrize(
-    "path",
-    [
-        "",
-        *(
-            path
-            for path, command in COMMANDS_BY_PATH.items()
-            if isinstance(command, click.Group)
-        ),
-    ],
-)
-def test_a_group_alone_prints_its_help(run, path):
-    alone = run(path)
-    requested = run(f"{path} --help")
-    assert alone.stdout == requested.stdout
-    assert (alone.exit_code, alone.stderr) == (0, "")
-    assert alone.stdout.startswith("Usage: ")
-
-
-def test_help_of_a_command_is_that_of_its_option(run):
-    for path in COMMANDS_BY_PATH:
-        assert run(f"help {path}").stdout == run(f"{path} --help").stdout, path
+def test_help_of_a_command_is_that_of_its_option_and_of_a_group_alone(run):
+    for path, command in COMMANDS_BY_PATH.items():
+        shown = run(f"{path} --help").stdout
+        assert shown.startswith("Usage: ")
+        assert run(f"help {path}").stdout == shown, path
+        if isinstance(command, click.Group):
+            assert run(path).stdout == shown
 
 
 def test_topics_have_text_and_names_that_no_command_has(run):
     assert not TOPICS.keys() & set(COMMANDS)
     for topic in TOPICS:
         assert len(run("help", topic).stdout) > 100
-        assert f"{topic} " in run("help").stdout
     assert MODE_MEANINGS.keys() == MODES.keys()
     assert tuple(GAMUT_MEANINGS) == METHODS
 
@@ -271,16 +197,10 @@ print(json.dumps([texts, [str(parts()) for _, parts in TOPICS.values()]]))
 
 def test_help_does_not_depend_on_docstrings():
     plain, optimised = (
-        subprocess.run(
-            [sys.executable, *flags, "-c", HELP_OF_ALL],
-            cwd=ROOT,
-            capture_output=True,
-            text=True,
-        )
+        output_of(sys.executable, *flags, "-c", HELP_OF_ALL, cwd=ROOT)
         for flags in ([], ["-OO"])
     )
-    assert optimised.stderr == ""
-    assert optimised.stdout == plain.stdout
+    assert optimised == plain
 
 
 def test_help_fits_80_columns(monkeypatch):
@@ -296,73 +216,43 @@ def test_help_fits_80_columns(monkeypatch):
 OPTIONS = []
 for command in COMMANDS_BY_PATH.values():
     OPTIONS += [(command, option) for option in command.params]
-NUMERIC = [
-    pytest.param(command, option, id=f"{command.name}{option.opts[-1]}")
-    for command, option in OPTIONS
-    if isinstance(
-        option.type, Number | click.types.IntParamType | click.types.FloatParamType
-    )
-]
+KNOWN = set(chain.from_iterable(option.opts for _, option in OPTIONS))
+SOURCES = {path: path.read_text("utf-8") for path in (ROOT / "uplift").rglob("*.py")}
 
 
-def test_hints_name_options_and_codes_that_exist(repository):
-    known = set(chain.from_iterable(option.opts for _, option in OPTIONS))
-    sources = "".join(
-        path.read_text("utf-8") for path in (repository / "uplift").rglob("*.py")
-    )
+def test_hints_name_options_and_codes_that_exist():
     for code, hint in HINTS.items():
-        assert f'"{code}"' in sources, code
-        assert {
-            word.strip(",.;:'()") for word in hint.split() if word.startswith("--")
-        } <= known, hint
+        assert any(f'"{code}"' in source for source in SOURCES.values()), code
+        assert KNOWN.issuperset(re.findall(r"(?<!\S)--[a-z-]+", hint)), hint
 
 
-def test_texts_of_the_library_name_parameters_that_are_options_and_no_options(
-    repository,
-):
-    known = set(chain.from_iterable(option.opts for _, option in OPTIONS))
+def test_texts_of_the_library_name_parameters_that_are_options_and_no_options():
     in_hints = {"measured", "outside"}  # of errors with a hint in `HINTS`
-    laboratory = repository / "uplift" / "lab"
-    pages = repository / "uplift" / "extras" / "pages"
-    for path in (repository / "uplift").rglob("*.py"):
-        if path.is_relative_to(laboratory) or path.is_relative_to(pages):
+    for path, source in SOURCES.items():
+        # Rooms and files that have programs.
+        if {"lab", "pages", "timing.py"} & set(path.parts):
             continue
-        if path.name == "timing.py":  # which has a program
-            continue
-        for text in prose(path):
-            assert text.startswith("uplift ") or not re.search(" --[a-z]", text), (
-                f"{path}: {text}"
-            )
-            names = (
-                set(re.findall(r"""(?<![\w'"-])([a-z_]+)=(?=$|['"\w])""", text))
-                - in_hints
-            )
-            assert {f"--{name.replace('_', '-')}" for name in names} <= known, (
-                f"{path}: {text}"
-            )
+        for text in prose(source):
+            assert text.startswith("uplift ") or not re.search(" --[a-z]", text), path
+            names = re.findall(r"""(?<![\w'"-])([a-z_]+)=(?=$|['"\w])""", text)
+            for name in set(names) - in_hints:
+                assert f"--{name.replace('_', '-')}" in KNOWN, f"{path}: {text}"
 
 
-def prose(path):
+def prose(source):
     """Texts with blanks of a module, without its docstrings."""
-    tree = ast.parse(path.read_text("utf-8"))
-    docs = {node.value for node in ast.walk(tree) if isinstance(node, ast.Expr)}
-    constants = (
-        node
-        for node in ast.walk(tree)
-        if isinstance(node, ast.Constant) and node not in docs
-    )
-    return [
-        node.value
-        for node in constants
-        if isinstance(node.value, str) and " " in node.value
-    ]
+    nodes = list(ast.walk(ast.parse(source)))
+    docs = {node.value for node in nodes if isinstance(node, ast.Expr)}
+    for node in nodes:
+        text = getattr(node, "value", None)
+        if isinstance(text, str) and " " in text and node not in docs:
+            yield text
 
 
 @pytest.mark.parametrize(
     ("hint", "shown"),
     [
         ("use dim=8 or less", "use --dim 8 or less"),
-        ("pass force=True to replace it", "pass --force to replace it"),
         ("use out_of_gamut='clip'", "use --out-of-gamut clip"),
         ("tables.names('illuminant') lists all", "'uplift help illuminants' lists all"),
         ("did you mean 'a=b'?", "did you mean 'a=b'?"),
@@ -372,33 +262,32 @@ def test_hints_of_the_library_name_options_on_the_command_line(hint, shown):
     assert hint_for(UpliftError("is bad", hint=hint)) == shown
 
 
-@pytest.mark.parametrize(("command", "option"), NUMERIC)
-def test_invalid_numbers_are_refused_on_one_line(command, option):
-    for number in ("nan", "inf", "1e999", "1_0", "٣", "9" * 5000, "", "0x10"):
-        with pytest.raises(click.BadParameter) as caught:
-            option.type.convert(number, option, None)
-        assert caught.value.message.isprintable()
-        assert len(caught.value.message) < 200
+def test_invalid_numbers_are_refused_on_one_line():
+    numeric = (Number, click.types.IntParamType, click.types.FloatParamType)
+    for _, option in OPTIONS:
+        if not isinstance(option.type, numeric):
+            continue
+        for number in ("nan", "inf", "1e999", "1_0", "٣", "9" * 5000, "", "0x10"):
+            with pytest.raises(click.BadParameter) as caught:
+                option.type.convert(number, option, None)
+            assert caught.value.message.isprintable()
+            assert len(caught.value.message) < 200
 
 
-def test_tables_wrap_texts_keep_numbers_whole_and_show_texts_as_they_are(
-    capsys, monkeypatch
-):
+def test_tables_wrap_texts_and_show_them_as_they_are(capsys, monkeypatch):
     monkeypatch.setenv("COLUMNS", "60")
     row = {
         "name": "[r]\x1b[2J",
         "first": 1234567.25,
         "rgb": [0.25, -0.5],
         "text": "some words of text, and more",
-        "none": None,
     }
-    headings = {key: key for key in row} | {"rgb": "two numbers"}
-    Table([row], headings, "a title", formats={"first": ".1f"}).print_text()
-    title, _, _, *lines = capsys.readouterr().out.splitlines()
-    assert title == "a title"
-    assert max(map(cell_len, lines)) <= 60
-    assert lines[0].startswith("[r]\\x1b[2J  1234567.2  0.250 -0.500  some words")
-    assert len(lines) == 2
+    Table(
+        [row], dict(zip(row, row, strict=True)), formats={"first": ".1f"}
+    ).print_text()
+    *_, first, second = capsys.readouterr().out.splitlines()
+    assert max(cell_len(first), cell_len(second)) <= 60
+    assert first.startswith("[r]\\x1b[2J  1234567.2  0.250 -0.500  some words")
 
 
 def test_rows_are_csv_with_a_column_for_each_number(capsys):
@@ -412,71 +301,52 @@ def test_rows_are_csv_with_a_column_for_each_number(capsys):
     [
         "atlas macbeth",
         "lab bounds #8a2a20",
-        "check moments-8-macbeth.uplift",
-        "lab diff moments-8.uplift sigmoid-8.uplift",
-        "info moments-8-macbeth.uplift",
+        "info {}/moments-8-macbeth.uplift",
         "lights info",
-        "lab palette metamers.toml",
-        "query #da7b2a",
+        "query #da7b2a --light A",
     ],
 )
 def test_no_line_breaks_inside_a_word_at_80_columns(run, monkeypatch, cubes, command):
-    monkeypatch.chdir(sample_path(".") if command.endswith(".toml") else cubes)
-    wide, narrow = (
-        _printed_at(columns, run, monkeypatch, *command.split())
-        for columns in (500, 80)
-    )
+    printed = []
+    for columns in ("500", "80"):
+        monkeypatch.setenv("COLUMNS", columns)
+        text = run(command.replace("{}", str(cubes))).stdout
+        printed.append(re.sub("[─▁-█]+", "", text))  # rules and sparklines
+    wide, narrow = printed
     assert max(map(cell_len, narrow.splitlines())) <= 80
     assert set(narrow.split()) <= set(wide.split())
-
-
-def _printed_at(columns, run, monkeypatch, *arguments):
-    """Output without rules and sparklines."""
-    monkeypatch.setenv("COLUMNS", str(columns))
-    return re.sub("[─▁-█]+", "", run(*arguments).stdout)
 
 
 def test_progress_off_terminals_is_a_line_now_and_then(monkeypatch, capsys):
     clock = iter(range(0, 100, 4))
     monkeypatch.setattr(time, "monotonic", lambda: float(next(clock)))
     monkeypatch.setattr(progress_module, "INTERVAL", 10.0)
-    event = Progress("fit", 3, 8, detail="round 2")
-    for options, lines in (
-        ({"title": "rows"}, ["rows: 3 of 8, round 2"]),
-        ({}, ["fitting: 3 of 8, round 2"]),
-        ({"quiet": True}, []),
-    ):
-        with progress_bar(**options) as report:
-            for _ in range(4):
-                report(event)
-        assert capsys.readouterr().err.splitlines() == lines
+    with progress_bar() as report:
+        for _ in range(4):
+            report(Progress("fit", 3, 8, detail="round 2"))
+    assert capsys.readouterr().err == "fitting: 3 of 8, round 2\n"
 
 
 @pytest.mark.parametrize(
     ("command", "words"),
     [
         ("info wood.png", "must be an uplift cube, got an image"),
-        ("report paints.csv", "must be an uplift cube, got text"),
-        ("lights info wood.png", "got an image"),
-        ("build --atlas wood.png", "must be a file of spectra, got an image"),
         ("build --atlas {}", "must be a file of spectra, got a cube"),
-        ("build --space nosuch", "; 'uplift help spaces' lists all"),
-        ("query 0.1 0.1 0.1 --light 2700", "did you mean '2700K'?"),
         ("plan wood.png", "not UTF-8, but an image"),
         ("query --check wood.png", "not UTF-8, but an image"),
-        ("build --illuminant nosuch", "; 'uplift help illuminants' lists all"),
-        ("build --observer nosuch", "; 'uplift help observers' lists all"),
+        ("query --input .", "error: ."),
+        ("atlas macbet.txt", "'macbeth'"),
+        ("build --space nosuch", "; 'uplift help spaces' lists all"),
+        ("query 0.1 0.1 0.1 --light 2700", "did you mean '2700K'?"),
         ("build --observer paints.csv", "use --space camera"),
         (
             "lights build --atlas macbeth",
             "macbeth: the file states reflectance ('reflectance spectrum')",
         ),
-        ("build --atlas colorchecker", "'uplift atlas' lists"),
         (
             "build --atlas macbeth --atlas paints.csv",
             "first used at macbeth:7; leave out one of the two files",
         ),
-        ("query 0.1,,0.2", "'0.1,,0.2' is not a colour"),
     ],
 )
 def test_errors_name_what_was_given_and_what_to_do(
@@ -487,8 +357,5 @@ def test_errors_name_what_was_given_and_what_to_do(
 
 
 def test_texts_without_unicode_are_spelt_in_ascii():
-    assert (
-        "ΔE00 0–1, 16³ × ▁▄█".encode("ascii", _respell.__name__)
-        == b"dE00 0-1, 16^3 x _:#"
-    )
-    assert "16³".encode("cp1252", _respell.__name__) == b"16\xb3"
+    spelt = "ΔE00 0–1, 16³ × ▁▄█".encode("ascii", _respell.__name__)
+    assert spelt == b"dE00 0-1, 16^3 x _:#"

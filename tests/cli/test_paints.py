@@ -1,8 +1,5 @@
 """``uplift paints``, and measured paints in mixtures and exports."""
 
-import json
-import subprocess
-import sys
 from dataclasses import replace
 from itertools import chain
 
@@ -11,13 +8,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from tests.extras.paint.invented import NAMES, invented, measured, plan
-from tests.extras.texture.conftest import channels, planes, write_exr
-from uplift.colorimetry import observer
-from uplift.colorimetry.delta_e import delta_e_spectra
-from uplift.common.errors import OptionError
-from uplift.extras.colour.srgb import hex_codes
 from uplift.extras.paint.paints_file import read_paints, write_paints
-from uplift.extras.paint.recipes import PaintTarget, match
 
 GRID = (400, 700, 20)
 
@@ -37,31 +28,21 @@ def samples(home):
     taken = measured(paints, plan(paints), 1.0)
     shares = taken.shares.copy()
     shares[6] = shares[6, [0, 2, 1]]
-    nm = ",".join(f"{value:g}" for value in paints.wavelengths)
-    rows = [f"name,{','.join(paints.names)},{nm}"]
-    for name, parts, values in zip(
-        taken.names, shares, taken.measured.values, strict=True
-    ):
-        numbers = ",".join(f"{value:.9f}" for value in (*parts, *values))
-        rows.append(f"{name},{numbers}")
+    columns = np.hstack([shares, taken.measured.values])
+    names = [*paints.names, *map(str, paints.wavelengths)]
+    rows = [",".join(["name", *names])]
+    for name, numbers in zip(taken.names, columns, strict=True):
+        rows.append(",".join([name, *map(str, numbers)]))
     (home / "samples.csv").write_text("\n".join(rows))
     return taken
 
 
-def light(name="D65"):
-    return observer.light(name, observer.DEFAULT_OBSERVER, *GRID)
-
-
-def code_of(paints, reflectance):
-    return hex_codes(observer.sensor(wavelengths=GRID).rgb(reflectance[None]))[0]
-
-
-def test_fit_writes_paints_and_reports_them(run, ask, samples, refuse, home):
+def test_fit_writes_paints_and_reports_them(run, ask, samples, home):
     answer = ask("paints fit samples.csv -o mine.toml")
-    assert answer["output"] == "mine.toml"
     stored = read_paints(home / "mine.toml")
-    assert [paint["name"] for paint in answer["paints"]] == list(stored.names)
+    assert stored.names == NAMES[:3]
     for row, paint in enumerate(answer["paints"]):
+        assert paint["name"] == stored.names[row]
         assert_allclose(paint["absorption"], stored.pigments.absorption[row], rtol=1e-8)
         assert_allclose(paint["scattering_errors"], stored.errors.scattering[row])
     assert answer["surface"]["inside"] == pytest.approx(stored.surface.inside)
@@ -70,227 +51,101 @@ def test_fit_writes_paints_and_reports_them(run, ask, samples, refuse, home):
     expected = [answer["mixtures_error"]]
     expected += [advised["mixtures_error"] for advised in answer["next"]]
     assert (np.diff(expected) < 0).all()
-    assert refuse("paints fit samples.csv -o mine.toml").code == "file-exists"
-    table = run("paints fit samples.csv -o mine.toml --force")
-    assert "sample 6" in table.stdout
-    assert "1 white : 1 red" in table.stdout
-    assert "mine.toml: 3 paints" in table.stderr
-    assert read_paints(home / "mine.toml").names == NAMES[:3]
+    table = run("paints fit samples.csv -o mine.toml --force").stdout
+    assert "sample 6" in table
+    assert "1 white : 1 red" in table
 
 
 @pytest.mark.parametrize(
     ("options", "surface"),
     [
-        ("", None),
-        ("--refractive-index 1", (0, 0)),
         ("--refractive-index 1.5 --surface-reflectance 0.01", (0.01, 0.596)),
         ("--surface-reflectance 0.02 --internal-reflectance 0.5", (0.02, 0.5)),
     ],
 )
-def test_a_stated_surface_is_kept(refuse, samples, monkeypatch, options, surface):
-    def fit(samples, *, surface, progress):
-        stated = surface and [surface.outside, surface.inside]
-        raise OptionError("nothing must be fitted", code=json.dumps(stated))
-
-    monkeypatch.setattr("uplift.extras.paint.fit_paints", fit)
-    stated = json.loads(refuse(f"paints fit samples.csv {options}").code)
-    if surface is None:
-        assert stated is None
-    else:
-        assert stated == pytest.approx(surface, abs=1e-3)
+def test_a_stated_surface_is_kept(run, samples, home, options, surface):
+    run(f"paints fit samples.csv -o mine.toml {options}")
+    stored = read_paints(home / "mine.toml").surface
+    assert (stored.outside, stored.inside) == pytest.approx(surface, abs=1e-3)
 
 
 def test_recipes_match_those_of_the_library(run, ask, paints):
-    answer = ask("paints match #3e7d4b --paints paints.toml --light D65 --light A")
-    assert answer["lights"] == ["D65", "A"]
+    words = "paints match #3e7d4b --paints paints.toml --light D65 --light A"
+    answer = ask(words)
     assert answer["colour"] in ("#3e7d4b", "#3f7d4b")  # at 20 nm
-    assert len(answer["recipes"]) == 5
     best = answer["recipes"][0]
-    parts = {paint["name"]: paint["parts"] for paint in best["paints"]}
-    mixed = paints.reflectance([parts.get(name, 0) for name in paints.names])
-    assert best["colour"] == code_of(paints, mixed)
-    assert best["cost"] == pytest.approx(
-        paints.cost([parts.get(name, 0) for name in paints.names])
-    )
+    named = {paint["name"]: paint["parts"] for paint in best["paints"]}
+    parts = [named.get(name, 0) for name in paints.names]
+    assert best["cost"] == pytest.approx(paints.cost(parts))
     assert set(best["delta_e"]) == {"D65", "A"}
     assert not set(best["elsewhere"]) & {"D65", "A"}
-    text = run("paints match #3e7d4b --paints paints.toml --light D65 --light A").stdout
-    first = " + ".join(f"{paint['parts']} {paint['name']}" for paint in best["paints"])
-    assert first in text
-    assert answer["colour"] in text
+    recipe = " + ".join(f"{count} {name}" for name, count in named.items())
+    assert recipe in run(words).stdout
 
 
 def test_a_measured_spectrum_is_matched(ask, paints, home):
-    reflectance = paints.reflectance([3, 0, 0, 1])
-    nm = ",".join(f"{value:g}" for value in paints.wavelengths)
-    values = ",".join(f"{value:.9f}" for value in reflectance)
-    (home / "card.csv").write_text(f"name,{nm}\ncard,{values}\n")
-    target = PaintTarget(reflectance, (light(),))
-    best = match(target, paints)[0]
+    values = np.stack([paints.wavelengths, paints.reflectance([3, 0, 0, 1])], axis=1)
+    np.savetxt(
+        home / "card.csv", values, "%.9f", ",", header="wavelength,card", comments=""
+    )
     for words in ("--spectrum card.csv", "card --atlas card.csv"):
         answer = ask(f"paints match {words} --paints paints.toml")
-        found = answer["recipes"][0]
-        pairs = [(paint["name"], paint["parts"]) for paint in found["paints"]]
-        assert pairs == list(zip(best.paints, best.parts, strict=True))
-        assert found["delta_e"]["D65"] == pytest.approx(best.error, abs=1e-3)
-        for name, error in found["elsewhere"].items():
-            expected = delta_e_spectra(light(name), best.reflectance, reflectance)
-            assert error == pytest.approx(float(expected), abs=1e-3)
+        best = answer["recipes"][0]
+        parts = {paint["name"]: paint["parts"] for paint in best["paints"]}
+        assert parts["white"] == 3 * parts["blue"]
+        assert max(best["delta_e"]["D65"], *best["elsewhere"].values()) < 0.01
 
 
-def test_options_limit_the_recipes(ask, run, paints):
+def test_options_limit_the_recipes(ask, paints):
     words = "paints match #405060 --paints paints.toml"
-    answer = ask(words, "--count", 2, "--parts", 9)
-    assert len(answer["recipes"]) == 5
-    for recipe in answer["recipes"]:
+    for recipe in ask(f"{words} --count 2 --parts 9")["recipes"]:
         assert len(recipe["paints"]) <= 2
         assert sum(paint["parts"] for paint in recipe["paints"]) <= 9
-    few = ask(words, "--paint", "white", "--paint", "blue")
+    few = ask(f"{words} --paint white --paint blue --plot recipes.png")
     used = chain(*(row["paints"] for row in few["recipes"]))
-    names = {paint["name"] for paint in used}
-    assert names == {"white", "blue"}
-    thin = ask(words, "--thickness", 0, "--ground", "#405060")
+    assert {paint["name"] for paint in used} == {"white", "blue"}
+    thin = ask(f"{words} --thickness 0 --ground #405060")
     assert thin["recipes"][0]["delta_e"]["D65"] < 0.1
-    picture = run(words, "--plot", "recipes.png").stdout
-    assert "blue" in picture
 
 
 def test_colours_out_of_reach_are_stated(run, paints):
     text = run("paints match #00ff00 --paints paints.toml --count 2").stdout
     assert "No mixture of 2 paints reaches the colour" in " ".join(text.split())
-    reached = run("paints match #f0e0d0 --paints paints.toml --count 1").stdout
-    assert "No mixture of 1 paint reaches" in " ".join(reached.split())
 
 
 def test_info_shows_what_the_file_has(run, ask, paints):
     answer = ask("paints info paints.toml")
     assert answer["wavelengths"] == paints.wavelengths.tolist()
-    mixtures = [ask(f"paints mix {name} --paints paints.toml") for name in paints.names]
+    text = run("paints info paints.toml").stdout
     for row, paint in enumerate(answer["paints"]):
-        assert paint["name"] == paints.names[row]
-        assert paint["colour"] == mixtures[row]["hex"]
+        name = paints.names[row]
+        assert paint["name"] == name
+        assert paint["colour"] == ask(f"paints mix {name} --paints paints.toml")["hex"]
         assert paint["price"] == paints.prices[row]
         assert paint["absorption"] == paints.pigments.absorption[row].tolist()
-    text = run("paints info paints.toml").stdout
-    for row, name in enumerate(paints.names):
-        assert name in text
-        assert mixtures[row]["hex"] in text
+        assert f"{name} " in text
 
 
 def test_mix_has_the_spectra_of_the_library(ask, paints):
     finer = paints.at(np.arange(400.0, 701, 20))
     words = "paints mix 3:white 1:blue --paints paints.toml --wavelengths 400:700:20"
-    assert_allclose(ask(words)["spectrum"], finer.reflectance([3, 0, 0, 1]), atol=1e-5)
-    film = ask(f"{words} --thickness 0.5 --ground black")
+    film = ask(f"{words} --thickness 0.5 --ground black")["spectrum"]
     expected = finer.reflectance([3, 0, 0, 1], 0.5, 0.0)
-    assert_allclose(film["spectrum"], expected, atol=1e-5)
-    bare = ask(f"{words} --refractive-index 1")
+    assert_allclose(film, expected, atol=1e-5)
+    bare = ask(f"{words} --refractive-index 1")["spectrum"]
     internal = replace(finer, surface=type(finer.surface)())
-    assert_allclose(bare["spectrum"], internal.reflectance([3, 0, 0, 1]), atol=1e-5)
-    assert ask(words)["names"] == ["white", "blue"]
-
-
-def test_measured_paint_over_an_image(run, paints, home, cubes):
-    rgb = np.full((2, 3, 3), 0.5, np.float32)
-    write_exr(home / "in.exr", planes(rgb))
-    words = "paints mix red --paints paints.toml --over in.exr -o out.exr --thickness 1"
-    assert "6 pixels" in run(words).stdout
-    painted = channels(home / "out.exr")
-    assert painted["R"].mean() > 2 * painted["B"].mean()
+    assert_allclose(bare, internal.reflectance([3, 0, 0, 1]), atol=1e-5)
 
 
 @pytest.mark.parametrize("suffix", [".h", ".glsl", ".hlsl", ".html"])
-def test_exports(run, refuse, paints, home, suffix):
+def test_exports_have_all_paints_or_those_selected(run, paints, home, suffix):
     path = home / f"tubes{suffix}"
-    assert run("export paints.toml -o", path).stdout.startswith(str(path))
+    run("export paints.toml -o", path)
     assert "yellow" in path.read_text("utf-8")
-    assert refuse("export paints.toml -o", path).code == "file-exists"
     run("export paints.toml --paint red --force -o", path)
     assert "yellow" not in path.read_text("utf-8")
-    if suffix == ".h":
-        run("export paints.toml --format c")
-        assert (home / "paints.h").exists()
 
 
-def test_a_table_of_two(run, refuse, paints, home):
-    assert refuse("export paints.toml -o a.cube").code == "two-paints"
-    assert not (home / "a.cube").exists()
+def test_a_table_of_two(run, paints, home):
     run("export paints.toml -o a.cube --paint red --paint blue")
     assert "red: share of blue in red" in (home / "a.cube").read_text()
-
-
-@pytest.mark.parametrize(
-    ("code", "words"),
-    [
-        ("no-paints", "paints fit none-of-paint.csv -o a.toml"),
-        ("file-not-found", "paints fit none.csv -o a.toml"),
-        ("file-not-found", "paints fit none-of-paint.csv --recipes none.csv -o a.toml"),
-        ("invalid-parts", "paints fit negative.csv -o a.toml"),
-        ("atlas", "paints fit nothing.csv -o a.toml"),
-        ("option", "paints fit negative.csv --refractive-index 0.5 -o a.toml"),
-        ("file-not-found", "paints match #888 --paints none.toml"),
-        ("invalid-file", "paints match #888 --paints negative.csv"),
-        ("unknown-name", "paints match #888 --paints paints.toml --paint green"),
-        ("option", "paints match #888 --paints paints.toml --paint red --paint red"),
-        ("colour", "paints match teal --paints paints.toml"),
-        ("colour", "paints match #888 --paints paints.toml --ground teal"),
-        ("option", "paints match #888 --paints paints.toml --thickness -1"),
-        ("file-not-found", "paints match --spectrum none.csv --paints paints.toml"),
-        ("invalid-file", "paints info negative.csv"),
-        ("unknown-name", "paints mix green --paints paints.toml"),
-        ("option", "paints mix 0:red --paints paints.toml"),
-        ("option", "paints mix -1:red --paints paints.toml"),
-        ("option", "paints mix red --paints paints.toml --thickness -1"),
-        ("file-not-found", "paints mix red --paints none.toml"),
-        ("unknown-name", "export paints.toml -o a.h --paint green"),
-        ("invalid-file", "export broken.toml -o a.h"),
-    ],
-)
-def test_bad_input(refuse, paints, home, code, words):
-    nm = "400,550,700"
-    (home / "none-of-paint.csv").write_text(f"name,{nm}\na,0.5,0.5,0.5\n")
-    (home / "negative.csv").write_text(f"name,red,{nm}\na,-1,0.5,0.5,0.5\n")
-    (home / "nothing.csv").write_text(f"name,red,{nm}\na,0,0.5,0.5,0.5\n")
-    (home / "broken.toml").write_text("format = 1")
-    before = {path.name for path in home.iterdir()}
-    assert refuse(words).code == code
-    assert {path.name for path in home.iterdir()} == before
-
-
-@pytest.mark.parametrize(
-    "words",
-    [
-        "paints match --paints paints.toml",
-        "paints match #888",
-        "paints match #888 --spectrum a.csv --paints paints.toml",
-        "paints match #888 --paints paints.toml --count 6",
-        "paints match #888 --paints paints.toml --count 0",
-        "paints match #888 --paints paints.toml --parts 0",
-        "paints fit a.csv --surface-reflectance 0.04",
-        "paints fit a.csv --internal-reflectance 0.6",
-        "paints mix red --paints paints.toml --dye",
-        "paints mix red --paints paints.toml --theories",
-        "paints mix red --paints paints.toml --scattering root",
-        "paints mix red --paints paints.toml --atlas macbeth",
-        "paints mix red --paints paints.toml --plate reflected",
-        "export paints.toml",
-        "export paints.toml -o a.npz",
-        "export paints.toml -o a.h --fill-missing",
-        "export paints.toml -o a.cube --light A",
-        "export cube.uplift -o a.h --paint red",
-        "export --runtime --paint red",
-    ],
-)
-def test_wrong_usage(misuse, paints, words):
-    misuse(words)
-
-
-def test_a_closed_pipe_ends_quietly(paints, home):
-    words = [sys.executable, "-m", "uplift_cli", "paints", "info", "paints.toml"]
-    child = subprocess.Popen(
-        words, cwd=home, stdout=subprocess.PIPE, stderr=subprocess.PIPE
-    )
-    child.stdout.close()
-    assert child.stderr.read() == b""
-    child.stderr.close()
-    child.wait()

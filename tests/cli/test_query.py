@@ -8,17 +8,14 @@ import subprocess
 import sys
 
 import colour
-import matplotlib.image
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 from uplift_cli.output.diagnostics import hint_for
 
 import uplift
-from uplift.colorimetry.observer import display_sensors
 from uplift.common.errors import ColourError
 from uplift.extras.colour import colour_source
-from uplift.extras.colour.srgb import hex_codes
 
 from .conftest import warning_lines
 
@@ -48,13 +45,10 @@ def macbeth_cube(cubes):
     ("words", "rgb"),
     [
         ("#cc3319", RED),
-        ("cc3319", RED),
         ("204 51 25 --encoded", RED),
-        ("#cc3319 --encoded", RED),
         ("#c31", [RED[0], RED[1], 0.005605391624202723]),
         ("0.8 0.2 0.1", [0.8, 0.2, 0.1]),
         ("'0.8, 0.2, 0.1'", [0.8, 0.2, 0.1]),
-        ("'0.8 0.2 0.1'", [0.8, 0.2, 0.1]),
         ("0,8 0,2 0,1", [0.8, 0.2, 0.1]),
         ("'0,8 0,2 1'", [0.8, 0.2, 1]),
         ("0,8;0,2;0,1", [0.8, 0.2, 0.1]),
@@ -67,67 +61,47 @@ def test_syntax_of_colours(ask, words, rgb):
 
 
 def test_several_colours_have_a_row_each(ask, run, refuse, home):
-    words = ("#cc3319", "0.8", "0.2", "0.1", "#c31", "0.5,0.5,0.5")
-    rows = ask("query", *words)
-    alone = [
-        ask("query", *part) for part in (words[:1], words[1:4], words[4:5], words[5:])
-    ]
-    assert [row["rgb"] for row in rows] == [one["rgb"] for one in alone]
-    assert run("query", *words, "--plot").stdout.count("#") == 4
+    words = "query 0.5,0.5,0.5 0.8 0.2 0.1 '0.1 0.2 0.3'"
+    colours = [row["rgb"] for row in ask(words)]
+    assert colours == [[0.5, 0.5, 0.5], [0.8, 0.2, 0.1], [0.1, 0.2, 0.3]]
+    assert run(words, "--plot").stdout.count("#") == 3
     assert (home / "plot.png").is_file()
-    assert refuse("query", *words, "0.5").code == "colour"
+    assert refuse(words, "0.5").code == "colour"
 
 
 @pytest.mark.parametrize(
     ("line", "code"),
     [
         ("0,2,0,3,0,4", "ambiguous-numbers"),
-        ("0,2, 0,3, 0,4", "ambiguous-numbers"),
         ("1,0,5,0,25", "ambiguous-numbers"),
         ("1,0,0,5", "ambiguous-numbers"),
-        ("0,2,0,3,0.4", "colour-outside"),
+        ("0,2,0,3,0.4", "rgb-out-of-gamut"),
         ("0.2,,0.3,0.4", "colour"),
-        ("#ff000", "colour"),
         ("#ff000, red", "colour"),
     ],
 )
 def test_lines_that_may_be_misread(refuse, table, line, code):
-    codes = {"colour-outside": "rgb-out-of-gamut"}
-    error = refuse("query --input", table(f"{line}\n"))
-    assert error.code == codes.get(code, code)
-    assert line in error.problem
+    assert refuse("query --input", table(f"{line}\n")).code == code
 
 
 def test_whole_numbers_between_commas(ask, refuse, table):
-    text = "r,g,b,i,j,k\n0,1,0,3,0,4\n"
-    assert ask("query --input", table(text))[0]["rgb"] == [0, 1, 0]
-    assert ask("query --input", table("1,0,0,1\n"))[0]["rgb"] == [1, 0, 0]
-    assert ask("query --encoded --input", table("0,255,0,25,0,25\n"))[0]["rgb"] == [
-        0,
-        1,
-        0,
-    ]
-    assert [one["rgb"] for one in ask("query 1,0,0 0,1,0")] == [
-        [1, 0, 0],
-        [0, 1, 0],
-    ]
-    for words in (
-        "0,2,0,3,0,4",
-        "1,0,0,0,1,0",
-        "0,2,0,3,0,4 --out-of-gamut clip",
+    for text, options, rgb in (
+        ("r,g,b,i,j,k\n0,1,0,3,0,4\n", "", [0, 1, 0]),
+        ("1,0,0,1\n", "", [1, 0, 0]),
+        ("0,255,0,25,0,25\n", "--encoded", [0, 1, 0]),
     ):
+        (answer,) = ask(f"query {options} --input", table(text))
+        assert answer["rgb"] == rgb
+    for words in ("1,0,0,0,1,0", "0,2,0,3,0,4 --out-of-gamut clip"):
         assert refuse(f"query {words}").code == "ambiguous-numbers"
 
 
 def test_rounding_is_not_out_of_gamut(run, ask):
     words = "query 1.000000001 -6e-17 0.5"
-    result = run(f"{words} --format json")
+    assert ask(words)["rgb"] == [1, 0, 0.5]
+    result = run(words)
+    assert "requested" not in result.stdout
     assert not result.stderr
-    answer = json.loads(result.stdout)
-    assert answer["rgb"] == [1, 0, 0.5]
-    assert answer["requested_rgb"][1] == 0
-    assert "requested" not in run(words).stdout
-    assert all(abs(value) > 1e-12 or value == 0 for value in answer["reflectance"])
 
 
 @pytest.mark.parametrize("command", [("query",), ("lab bounds",), ("paints mix",)])
@@ -155,8 +129,6 @@ def test_out_of_gamut_colours_are_mapped_with_a_warning(run, method, rgb):
     assert answer["requested_rgb"] == [1.4, 0.3, -0.1]
     assert answer["round_trip"]["delta_e_2000"] < 0.01
     assert_allclose(inside["rgb"], RED)
-    text = run("query 1.4 0.3 -0.1", *words[2:]).stdout
-    assert "1.400000 0.300000 -0.100000" in text.splitlines()[0]
 
 
 @pytest.mark.parametrize("name", ["P3-D65", P3])
@@ -164,21 +136,15 @@ def test_colours_of_another_display(ask, name):
     theirs = colour.matrix_RGB_to_RGB("P3-D65", "sRGB")
     requested = ask("query 0.5 0.6 0.3 --input-space", name)["requested_rgb"]
     assert_allclose(requested, theirs @ [0.5, 0.6, 0.3], rtol=0, atol=3e-4)
-    green = ask("query 0 1 0 --out-of-gamut clip --input-space", name)
-    assert_allclose(green["requested_rgb"], theirs[:, 1], rtol=0, atol=3e-4)
-    assert green["rgb"] == [0, 1, 0]
 
 
 @pytest.mark.parametrize(
     "text",
     [
-        "0.8,0.2,0.1\n0.1,0.1,0.1",
         '"r","g","b"\n"0.8","0.2","0.1"\n"0.1","0.1","0.1"\n',
-        "\ufeffr,g,b\n0.8,0.2,0.1\n0.1,0.1,0.1\n",
-        "0.8,0.2,0.1\r\n0.1,0.1,0.1\r\n",
+        "\ufeffr,g,b\r\n0.8,0.2,0.1\r\n0.1,0.1,0.1",
         "0.8 0.2 0.1\n\n0.1\t0.1\t0.1\n\n",
         "0.8;0.2;0.1\n 0.1; 0.1; 0.1\n",
-        "\ufeffr;g;b\n0,8;0,2;0,1\n0,1;0,1;0,1\n",
         "sep=;\nRot;Grün;Blau;Name\n0,8;0,2;0,1;brick, red\n;;;\n0,1;0,1;0,1;coal;;\n",
         "0,8\t0,2\t0,1\n0,1 0,1  0,1\n",
         '"0,8","0,2","0,1"\n"0,1","0,1","0,1"\n',
@@ -187,32 +153,27 @@ def test_colours_of_another_display(ask, name):
     ],
 )
 def test_syntax_of_files(ask, table, text):
-    for source in (["--input", table(text)], ["-"], ["--input", "-"]):
+    for source in (["--input", table(text)], ["-"]):
         answers = ask("query", *source, input=text.encode())
-        assert_array_equal(
-            [answer["rgb"] for answer in answers], [[0.8, 0.2, 0.1], [0.1] * 3]
-        )
+        colours = [answer["rgb"] for answer in answers]
+        assert_array_equal(colours, [[0.8, 0.2, 0.1], [0.1] * 3])
 
 
 def test_files_of_codes_and_hex(ask, table):
-    answers = ask(
-        "query --encoded --input",
-        table("#cc3319\ncc3319\n204,51,25\n#cc3319,brick\n"),
-    )
-    colours = [answer["rgb"] for answer in answers]
-    assert_allclose(colours, [RED] * 4, rtol=0, atol=1e-15)
+    path = table("#cc3319\ncc3319\n204,51,25\n#cc3319,brick\n")
+    for answer in ask("query --encoded --input", path):
+        assert_allclose(answer["rgb"], RED, rtol=0, atol=1e-15)
 
 
 @pytest.mark.parametrize(
     ("text", "line"),
     [
         ("0,0,0\n0,0,x\n", 2),
-        ("0,0,0\n0,0,inf\n", 2),
         ("r,g,b\n0,0,0\n\n0,0\n", 4),
         ("r,g,b\nr,g,b\n", 2),
-        ("0,0,0\n# a remark\n", 2),
         ("0,0,0\n0,1.5,0\n", 2),
         ("0,0," + "x" * 200_000, 1),
+        (60_000 * "1", 1),
         ("", None),
         ("r,g,b\n", None),
         (b"0,0,0\n\xff\n", None),
@@ -225,56 +186,26 @@ def test_errors_in_files_have_the_line(refuse, table, text, line):
     assert error.where == (str(path) if line is None else f"{path}:{line}")
     assert len(str(error)) < len(str(path)) + 250
     piped = refuse("query -", input=path.read_bytes())
-    assert (piped.path, piped.line, piped.problem) == (
-        "standard input",
-        line,
-        error.problem,
-    )
+    assert (piped.line, piped.problem) == (line, error.problem)
 
 
-def test_files_that_cannot_be_read_are_errors(refuse, home, table):
-    for path in ("none.csv", str(home)):
-        error = refuse("query --input", path)
-        assert (type(error), error.where) == (ColourError, path)
-    error = refuse("query --encoded --input", table("0,0,0\n\n0,256,0\n"))
-    assert (error.line, error.code) == (3, "invalid-codes")
-
-
-@pytest.mark.parametrize("chunk", [1, 3])
 def test_lines_and_their_numbers_do_not_depend_on_the_blocks(
-    ask, run, table, monkeypatch, chunk
+    ask, run, table, monkeypatch
 ):
-    monkeypatch.setattr(colour_source, "CHUNK", chunk)
+    monkeypatch.setattr(colour_source, "CHUNK", 1)
     path = table("\ufeffr,g,b,\u00e9\r\n0.1,0.2,0.3\r\u0020\n\n0.5,0.5,0.5")
-    answers = ask("query --input", path)
-    assert_array_equal(
-        [answer["rgb"] for answer in answers], [[0.1, 0.2, 0.3], [0.5] * 3]
-    )
+    colours = [answer["rgb"] for answer in ask("query --input", path)]
+    assert_array_equal(colours, [[0.1, 0.2, 0.3], [0.5] * 3])
     path.write_bytes(path.read_bytes() + b"\r\n0.5,0.5")
-    assert (
-        f"{path}:6: '0.5,0.5' is not a colour"
-        in run("query --input", path, code=2).stderr
-    )
+    assert f"{path}:6: " in run("query --input", path, code=2).stderr
 
 
 def test_lines_parsed_at_once_are_those_parsed_one_by_one(ask, table):
-    lines = ["0.1,0.2,0.3", ".5 1. 0", "1e-3;2E-2;+1e0", "0.2, 0.3, 0.4", "#cc3319"]
-    text = "\n".join(3 * lines) + "\n"
+    text = "0.1,0.2,0.3\n.5 1. 0\n1e-3;2E-2;+1e0\n0.2, 0.3, 0.4\n#cc3319\n"
     at_once = ask("query --input", table(text))
-    singly = [
-        ask("query", *line.replace(",", " ").replace(";", " ").split())
-        for line in lines
-    ]
-    assert [answer["rgb"] for answer in at_once] == 3 * [one["rgb"] for one in singly]
     # left to the parser of single lines
     quoted = text.replace("0.1,0.2,0.3", '"0.1","0.2","0.3"')
     assert ask("query --input", table(quoted)) == at_once
-
-
-@pytest.mark.parametrize("end", ["", ",x"])
-def test_a_long_line_of_digits_is_refused_at_once(refuse, table, end):
-    error = refuse("query --input", table(60_000 * "1" + end))
-    assert error.line == 1
 
 
 @pytest.mark.skipif(not os.path.exists("/dev/zero"), reason="needs /dev/zero")
@@ -282,29 +213,23 @@ def test_an_endless_line_is_an_error(refuse):
     assert isinstance(refuse("query --input /dev/zero"), ColourError)
 
 
-@pytest.mark.parametrize("style", ["json", "table"])
-def test_lines_of_a_stream_are_answered_as_they_come(style):
-    words = ["query", "-", "--format", style, "--wavelengths", "500,600"]
+def test_lines_of_a_stream_are_answered_as_they_come():
+    words = ["query", "-", "--format", "json", "--wavelengths", "500,600"]
     command = [sys.executable, "-m", "uplift_cli", *words]
-    environment = {
-        name: value for name, value in os.environ.items() if name != "PYTHONUNBUFFERED"
-    }
     with subprocess.Popen(
-        command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, env=environment
+        command, stdin=subprocess.PIPE, stdout=subprocess.PIPE
     ) as query:
         for line in (b"#cc3319\n", b"0.5,0.5,0.5\n"):
             query.stdin.write(line)
             query.stdin.flush()
             answer = b""
             while answer.count(b"0.") < 2:
-                chunk = (
-                    query.stdout.read1()
-                )  # hangs if the answer waits for the end of the stream
+                # This hangs if the answer waits for the end of the stream.
+                chunk = query.stdout.read1()
                 assert chunk
                 answer += chunk
-        query.stdin.close()
-        query.stdout.read()
-        assert query.wait() == 0
+        query.communicate()
+        assert query.returncode == 0
 
 
 def test_colours_by_xyz_and_by_chromaticity(ask):
@@ -316,20 +241,6 @@ def test_colours_by_xyz_and_by_chromaticity(ask):
     assert_allclose(by_xy["reflectance"], xyz["reflectance"], rtol=0, atol=1e-6)
 
 
-@pytest.mark.parametrize(
-    "words",
-    [
-        "",
-        "#fff --input a.csv",
-        "#fff --xyz 1 1 1",
-        "--xy 0.3 0.3",
-        "--luminance 0.3 #fff",
-    ],
-)
-def test_exactly_one_source_of_colours(misuse, words):
-    misuse(f"query {words}")
-
-
 FIELDS = """
 cube rgb requested_rgb wavelengths reflectance xyz round_trip cell status realisable
 entry standard_error error_bound reference standard_errors error_bounds lights
@@ -337,32 +248,20 @@ unlike_atlas hsv hsl yiq dominant_wavelength complementary purity
 """
 
 
-def test_json_has_every_field(ask, macbeth_cube):
+def test_json_has_every_field_of_an_entry(ask, macbeth_cube):
     cube = uplift.load(macbeth_cube)
-    row = cube.data.atlas.names.index("red")
-    answer = ask("query --cube", macbeth_cube, *cube.data.atlas.rgb[row].tolist())
+    atlas = cube.data.atlas
+    row = atlas.names.index("red")
+    rgb = atlas.rgb[row].tolist()
+    answer = ask("query --cube", macbeth_cube, *rgb)
     assert answer.keys() == set(FIELDS.split())
-    assert answer["cube"] == {
-        "file": str(macbeth_cube),
-        "dim": cube.data.lattice.dim,
-        "atlases": ["macbeth.txt"],
-    }
-    assert (answer["lights"], answer["standard_errors"], answer["unlike_atlas"]) == (
-        {},
-        {},
-        False,
-    )
-    assert answer["standard_error"] == pytest.approx(cube.data.atlas.error[row])
-    assert answer["error_bound"] == pytest.approx(answer["standard_error"])
-    assert answer["rgb"] == cube.data.atlas.rgb[row].tolist()
-    assert_allclose(
-        answer["reflectance"], cube.reflectance(answer["rgb"]), rtol=0, atol=1e-12
-    )
-    assert_allclose(answer["round_trip"]["rgb"], answer["rgb"], rtol=0, atol=1e-6)
-    assert (answer["status"], answer["entry"]) == (
-        ["atlas primary", "atlas corner"],
-        "red",
-    )
+    assert answer["cube"]["atlases"] == ["macbeth.txt"]
+    assert answer["standard_error"] == pytest.approx(atlas.error[row])
+    assert answer["rgb"] == rgb
+    assert_allclose(answer["reflectance"], cube.reflectance(rgb), rtol=0, atol=1e-12)
+    assert_allclose(answer["round_trip"]["rgb"], rgb, rtol=0, atol=1e-6)
+    assert answer["status"] == ["atlas primary", "atlas corner"]
+    assert answer["entry"] == "red"
 
 
 def test_classical_coordinates(ask):
@@ -378,59 +277,27 @@ def test_classical_coordinates(ask):
     assert ask("query #ff00ff")["complementary"]
 
 
-def test_csv_has_the_numbers_of_json(run, ask, table, macbeth_cube):
-    path = table("0.8,0.2,0.1\n0,0,0\n0.1,0.1,0.1\n1,1,1\n#735244\n")
+def test_csv_has_the_numbers_of_json_and_of_the_library(ask, run, table, macbeth_cube):
+    path = table("0.8,0.2,0.1\n0,0,0\n0,1,0\n#735244\n")
     line = "query --light A --light FL11 --wavelengths 450,550.5 --cube"
     words = macbeth_cube, "--input", path
-    text = run(line.replace("query", "query --format csv"), *words).stdout
-    rows = csv.DictReader(io.StringIO(text))
-    names = "r,g,b,delta_e_2000,standard_error,error_bound,standard_error_A"
-    names += ",error_bound_A,standard_error_FL11,error_bound_FL11,hex_A,hex_FL11"
-    assert rows.fieldnames == [*names.split(","), "entry", "450", "550.5"]
-    for row, answer in zip(rows, ask(line, *words), strict=True):
-        assert [float(row[name]) for name in "rgb"] == answer["rgb"]
-        values = [float(row[f"{at:g}"]) for at in answer["wavelengths"]]
-        assert values == answer["reflectance"]
-        assert float(row["standard_error"]) == answer["standard_error"]
-        assert float(row["error_bound"]) == answer["error_bound"]
-        assert (row["entry"] or None) == answer["entry"]
-        for light in ("A", "FL11"):
-            error = float(row[f"standard_error_{light}"])
-            assert error == answer["standard_errors"][light]
-            assert float(row[f"error_bound_{light}"]) == answer["error_bounds"][light]
-            assert row[f"hex_{light}"] == answer["lights"][light]["hex"]
-
-
-def test_standard_errors_under_other_lights(ask, run, table, macbeth_cube):
+    text = run(line, *words, "--format", "csv").stdout
     cube = uplift.load(macbeth_cube)
-    rgb = [0.8, 0.2, 0.1]
-    lights = ("FL11", "HP1")
-    words = ("--light", "FL11", "--light", "HP1", "--cube", macbeth_cube)
-    expected = {
-        light: pytest.approx(float(cube.standard_error(rgb, light))) for light in lights
-    }
-    bounds = {
-        light: pytest.approx(float(cube.error_bound(rgb, light))) for light in lights
-    }
-    answer = ask("query", *rgb, *words)
-    assert (answer["standard_errors"], answer["error_bounds"]) == (expected, bounds)
-    file = table("0.8,0.2,0.1\n0,1,0\n")
-    text = run("query --input", file, *words).stdout
+    rows = csv.DictReader(io.StringIO(text))
+    for row, answer in zip(rows, ask(line, *words), strict=True):
+        assert (row["entry"] or None) == answer["entry"]
+        assert float(row["450"]) == answer["reflectance"][0]
+        assert float(row["550.5"]) == answer["reflectance"][1]
+        for key in ("standard_error", "error_bound"):
+            assert float(row[key]) == answer[key]
+            for light, error in answer[f"{key}s"].items():
+                expected = getattr(cube, key)(answer["rgb"], light)
+                assert error == pytest.approx(expected)
+                assert float(row[f"{key}_{light}"]) == error
+                assert row[f"hex_{light}"] == answer["lights"][light]["hex"]
+    text = run("query --light FL11 --light HP1 --cube", *words).stdout
     assert "unlike the atlas" in text
     assert max(map(len, text.splitlines())) <= 80
-
-
-def test_colours_under_lights_are_those_of_relit_images(run, ask, macbeth_cube):
-    """sRGB with the white of the light, as looks state them."""
-    cube = uplift.load(macbeth_cube)
-    (screen,) = display_sensors(["FL11"], cube.observer)
-    expected = screen.rgb(cube.reflectance([0.2, 0.1, 0.05]))
-    words = f"query --cube {macbeth_cube} 0.2 0.1 0.05 --light FL11"
-    found = ask(words)["lights"]["FL11"]
-    assert_allclose(found["srgb"], expected, atol=1e-12)
-    assert_allclose(found["xyz"], screen.xyz(expected), atol=1e-12)
-    assert found["hex"] == hex_codes(expected[None])[0]
-    assert found["hex"] in run(words).stdout
 
 
 @pytest.mark.parametrize(
@@ -449,47 +316,17 @@ def test_wavelengths(ask, text, expected):
 
 
 def test_stored_answers_are_checked(
-    run, refuse, misuse, home, small_cube, plain_cube, table
+    run, ask, refuse, home, small_cube, plain_cube, table
 ):
     small_cube.save(home / "a.uplift")
     plain_cube.save(home / "b.uplift")
     colours = table("0.2,0.3,0.4\n0.5,0.1,0.7\n")
-    (home / "answers.csv").write_text(
-        run("query --cube a.uplift --format csv --input", colours).stdout
-    )
+    answers = run("query --cube a.uplift --format csv --input", colours).stdout
+    (home / "answers.csv").write_text(answers)
     assert "passed, 0 of 2" in run("query --cube a.uplift --check answers.csv").stdout
-    failed = json.loads(
-        run(
-            "query --cube b.uplift --check answers.csv --format json",
-            code=1,
-        ).stdout
-    )
+    failed = ask("query --cube b.uplift --check answers.csv", code=1)
     assert (failed["passed"], failed["colours"]) == (False, 2)
     assert failed["largest"] > failed["tolerance"]
     run("query --cube b.uplift --check answers.csv --tolerance 1")
     (home / "bad.csv").write_text("r,g,b,500\n0.1,0.2,0.3,x\n")
     assert refuse("query --check bad.csv").where == "bad.csv:2"
-    assert "--check" in misuse("query #fff --check answers.csv")
-
-
-def test_a_hint_names_the_only_cube_of_the_folder(run, home, plain_cube):
-    assert "--cube" not in run("query #cc3319").stderr
-    plain_cube.save(home / "mine.uplift")
-    assert "--cube mine.uplift" in run("query #cc3319").stderr
-    assert "--cube" not in run("query #cc3319 --format json").stderr
-
-
-def test_plot(run, refuse, home, table):
-    run("query #cc3319 --plot red.png")
-    picture = matplotlib.image.imread(home / "red.png")
-    distance = np.abs(picture[..., :3] - np.array([204, 51, 25]) / 255).max(axis=-1)
-    assert (distance < 0.01).sum() > 100  # the curve has the colour
-    assert refuse("query #ffffff --plot red.png").code == "file-exists"
-    run("query --plot red.png --force --input", table("#cc3319\n#ffffff\n"))
-    assert (matplotlib.image.imread(home / "red.png").shape) == picture.shape
-
-
-def test_a_light_is_named_once_in_a_line(run, macbeth_cube):
-    lines = run("query 0.2 0.3 0.4 --light A --cube", macbeth_cube).stdout.splitlines()
-    named = [line.split().count("A") + line.count("(A)") for line in lines]
-    assert sorted(set(named)) == [0, 1]

@@ -20,16 +20,12 @@ def test_commands_run_under_old_names_with_a_note(run, old, new):
     assert result.stdout == run(f"{new} --help").stdout == run(f"help {old}").stdout
     assert result.stderr == f"note: 'uplift {old}' is 'uplift {new}'\n"
     assert not run(f"{old} --help -q").stderr
-    assert f"  {old} " not in run("--help").stdout
 
 
 @pytest.mark.parametrize(("command", "old"), OPTIONS)
 def test_old_options_are_errors_with_the_new_one(run, command, old):
     new = REPLACED[f"{command} {old}"]
-    params = commands(main)[command].params
-    known = set(chain(*(param.opts for param in params)))
-    assert old not in known
     if new.startswith("--"):
-        assert new.partition(",")[0] in known
-    result = run(f"{command} {old} 3", code=2)
-    assert f"{new} replaces it." in result.stderr
+        params = commands(main)[command].params
+        assert new.partition(",")[0] in chain(*(param.opts for param in params))
+    assert f"{new} replaces it." in run(f"{command} {old} 3", code=2).stderr

@@ -1,71 +1,33 @@
 """``uplift lab wavelengths``."""
 
-import matplotlib.image
 import pytest
 from numpy.testing import assert_allclose
 
 
 @pytest.fixture
-def choose(run, macbeth):
-    """Standard output for the ColorChecker."""
-    return lambda *args, **options: (
-        run("lab wavelengths --atlas", macbeth, *args, **options).stdout
-    )
-
-
-@pytest.fixture
 def answer(ask, macbeth):
     """Answer in JSON for the ColorChecker."""
-    return lambda *args: ask("lab wavelengths --atlas", macbeth, *args)
-
-
-def test_plot(choose, home):
-    choose(
-        "--count",
-        4,
-        "--light",
-        "A",
-        "--light",
-        "FL11",
-        "--plot",
-        "a.png",
-        "--method",
-        "bins",
-    )
-    picture = matplotlib.image.imread(home / "a.png")
-    assert picture.shape[0] > 400
-    assert picture[..., :3].std() > 0.05
+    return lambda words: ask(f"lab wavelengths {words} --atlas", macbeth)
 
 
 def test_given_wavelengths(answer):
-    found = answer("--wavelengths", "420:660:40")
+    found = answer("--wavelengths 420:660:40")
     assert found["wavelengths"] == [420, 460, 500, 540, 580, 620, 660]
     assert found["method"] == "given"
-    plain = answer("--count", 7, "--method", "bins")
+    plain = answer("--count 7 --method bins")
     assert found["errors"]["D65"]["mean"] < plain["errors"]["D65"]["mean"] / 2
 
 
-@pytest.mark.parametrize(
-    ("options", "name"),
-    [
-        ("", "--count"),
-        ("--count 4 --tolerance 1", "--tolerance"),
-        ("--wavelengths 500 --count 1", "--wavelengths"),
-        ("--orders 3 2 1 --count 4", "--orders"),
-        ("--wavelengths 500 --method bins", "--method"),
-    ],
-)
-def test_options_that_exclude_or_need_others(misuse, options, name):
-    assert name in misuse(f"lab wavelengths {options}")
-
-
 def test_orders_of_the_channels(answer):
-    found = answer("--orders", 3, 2, 1, "--light", "C")
+    found = answer("--orders 3 2 1 --light C")
     assert (found["count"], found["method"]) == (6, "meyer")
-    assert_allclose(
-        answer("--count", 4, "--method", "meyer", "--light", "C")["wavelengths"],
-        [456.4, 490.9, 557.7, 631.4],
-        atol=0.1,
-    )
-    cones = answer("--orders", 3, 2, 1, "--channels", "cones", "--light", "C")
+    four = answer("--count 4 --method meyer --light C")["wavelengths"]
+    assert_allclose(four, [456.4, 490.9, 557.7, 631.4], atol=0.1)
+    cones = answer("--orders 3 2 1 --channels cones --light C --plot a.png")
     assert cones["wavelengths"] != found["wavelengths"]
+
+
+def test_table_and_plot(run, home, macbeth):
+    words = "lab wavelengths --count 4 --light A --method bins --plot a.png --atlas"
+    run(words, macbeth)
+    assert (home / "a.png").read_bytes().startswith(b"\x89PNG")

@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from uplift.colorimetry import observer
 from uplift.colorimetry.delta_e import delta_e_2000, delta_e_2000_terms, lab, lab_to_xyz
 from uplift.extras.colour.dominant import dominant_wavelengths
 
@@ -42,25 +41,6 @@ def test_lab_agrees_with_colour_science_and_is_invertible(name):
     xyz[0] = 0
     assert_allclose(lab(xyz, white), colour.XYZ_to_Lab(xyz, xy), rtol=1e-9, atol=1e-9)
     assert_allclose(lab_to_xyz(lab(xyz, white), white), xyz, atol=1e-14)
-
-
-@pytest.mark.parametrize(
-    "name", [observer.DEFAULT_OBSERVER, "CIE 2015 2 Degree Standard Observer"]
-)
-def test_spectral_colours_and_their_tints(name):
-    """A mixture of white and one wavelength has that wavelength, and the purity of the
-    distances in x, y.
-    """
-    sensor = observer.sensor(observer=name)
-    for wavelength in (440, 480, 520, 560, 600, 640):
-        pure = sensor.cmfs[list(sensor.wavelengths).index(wavelength)]
-        tint = pure / pure.sum() + 2 * sensor.light.white / sensor.light.white.sum()
-        for colour_, purity in ((pure, 1), (tint, 1 / 3)):
-            [found], [is_complement], [pure_] = dominant_wavelengths(
-                colour_[None], sensor
-            )
-            assert found == pytest.approx(wavelength, abs=1e-6)
-            assert (is_complement, pure_) == (False, pytest.approx(purity))
 
 
 def test_dominant_wavelengths_agree_with_colour_science(sensor):

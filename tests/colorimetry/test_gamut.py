@@ -42,38 +42,44 @@ def outside() -> Array:
     saturated, and combinations.
     """
     rng = np.random.default_rng(0)
-    near = np.clip(rng.normal(0.5, 0.5, (3000, 3)), 0, 1) + rng.normal(
-        0, 1e-3, (3000, 3)
-    )
-    found = [
-        near,
-        rng.normal(0.5, 1, (4000, 3)),
-        20 * rng.random((1000, 3)),
-        -rng.random((100, 3)),
-    ]
-    grey = np.linspace(-1, 3, 41)[:, None].repeat(3, axis=1)
-    rgb = np.concatenate([*found, grey, 3 * np.eye(3), -np.eye(3), 2 - 2 * np.eye(3)])
+    near = np.clip(rng.normal(0.5, 0.5, (3000, 3)), 0, 1)
+    near += rng.normal(0, 1e-3, (3000, 3))
+    far = rng.normal(0.5, 1, (4000, 3))
+    bright = 20 * rng.random((1000, 3))
+    corners = (3 * np.eye(3), -np.eye(3), 2 - 2 * np.eye(3))
+    rgb = np.concatenate([near, far, bright, -rng.random((100, 3)), *corners])
     return rgb[((rgb < 0) | (rgb > 1)).any(axis=1)]
 
 
 MOVERS = [method for method in METHODS if method != "error"]
 
 
-def test_result_reports_the_moved_colours():
-    found = map_to_gamut(
-        [[[0.2, 0.3, 0.4]], [[-0.25, 0.5, 1.5]], [[1.125, 0, 0]]], SRGB, "clip"
-    )
-    assert found.outside.tolist() == [[False], [True], [True]]
+def test_moved_colours_are_counted_and_rounding_errors_are_none():
+    rgb = [[0.2, 1 + 1e-12, -1e-12], [-0.25, 0.5, 1.5], [1.125, 0, 0]]
+    found = map_to_gamut(rgb, SRGB, "clip")
+    assert found.outside.tolist() == [False, True, True]
     assert (found.count, found.max_change) == (2, 0.5)
-    assert_array_equal(found.rgb[:, 0], [[0.2, 0.3, 0.4], [0, 0.5, 1], [1, 0, 0]])
-    assert_array_equal(found.requested[1], [[-0.25, 0.5, 1.5]])
+    assert_array_equal(found.rgb, np.clip(rgb, 0, 1))
+    assert_array_equal(found.requested[1:], rgb[1:])
+    assert map_to_gamut(np.zeros((0, 3)), SRGB, "clip").max_change == 0
 
 
-@pytest.mark.parametrize("method", METHODS)
-def test_rounding_errors_are_in_gamut(method):
-    found = map_to_gamut([1 + 1e-12, -1e-12, 0.5], SRGB, method)
-    assert (found.rgb.tolist(), found.count) == ([1, 0, 0.5], 0)
-    assert map_to_gamut(np.zeros((0, 3)), SRGB, method).max_change == 0
+@pytest.mark.parametrize(
+    ("rgb", "method", "error", "code"),
+    [
+        *(
+            ([[0.1, 0.2, 0.3], [2, 0, np.nan]], m, ColourError, "colour")
+            for m in METHODS
+        ),
+        ([2, 0, 0], "error", ColourError, "rgb-out-of-gamut"),
+        (0.5, "clip", ColourError, "colour"),
+        ([[0.1, 0.2, 0.3], [0.1]], "clip", ColourError, "colour"),
+        ([0.1, 0.2, 0.3], "squash", UnknownNameError, "unknown-name"),
+    ],
+)
+def test_bad_input_raises(rgb, method, error, code):
+    with raises(error, code):
+        map_to_gamut(rgb, SRGB, method)
 
 
 @pytest.mark.parametrize("method", MOVERS)
@@ -87,35 +93,6 @@ def test_answers_do_not_depend_on_precision_or_blocks(method):
     assert_array_equal(
         expected[-20:], map_to_gamut(rgb[-20:].astype(float), SRGB, method).rgb
     )
-
-
-@pytest.mark.parametrize("method", MOVERS)
-@pytest.mark.parametrize("value", [1.7e308, 1e150, 5e-324, 1e-160])
-def test_extreme_magnitudes_are_mapped_inside(method, value):
-    signs = np.stack(np.meshgrid(*[[-1, 0, 1]] * 3), axis=-1).reshape(-1, 3)
-    found = map_to_gamut(
-        value * signs - (value < 1) * np.array([0, 0, 1e-3]), SRGB, method
-    ).rgb
-    assert ((found >= 0) & (found <= 1)).all()
-
-
-BAD = [[0.1, 0.2, 0.3], [0.5, 0.5, np.nan], [2, 0, 0]]
-
-
-@pytest.mark.parametrize(
-    ("rgb", "method", "error", "code"),
-    [
-        (BAD, "error", ColourError, "colour"),
-        *((BAD, method, ColourError, "colour") for method in MOVERS),
-        (0.5, "clip", ColourError, "colour"),
-        ("red", "clip", ColourError, "colour"),
-        ([[0.1, 0.2, 0.3], [0.1]], "clip", ColourError, "colour"),
-        ([0.1, 0.2, 0.3], "squash", UnknownNameError, "unknown-name"),
-    ],
-)
-def test_bad_input_raises(rgb, method, error, code):
-    with raises(error, code):
-        map_to_gamut(rgb, SRGB, method)
 
 
 CIE_RGB = Primaries(
@@ -138,22 +115,14 @@ def test_example_of_the_thesis():
 
 
 def test_matrices_agree_with_all_spaces_of_colour_science():
+    there = conversion(ACESCG, P3)
+    assert_allclose(there @ [1, 1, 1], 1, rtol=0, atol=1e-15)
+    assert_allclose(conversion(P3, ACESCG) @ there, np.eye(3), rtol=0, atol=1e-12)
     for space in colour.RGB_COLOURSPACES.data.values():
         ours = Primaries.of([*space.primaries.ravel(), *space.whitepoint])
         theirs = colour.normalised_primary_matrix(space.primaries, space.whitepoint)
         assert_allclose(ours.rgb_to_xyz, theirs, rtol=0, atol=1e-12)
         assert_allclose(ours.rgb_to_xyz.sum(axis=1)[1], 1, rtol=0, atol=1e-12)
-
-
-def test_conversions_keep_white_and_are_invertible():
-    there = conversion(ACESCG, P3)
-    back = conversion(P3, ACESCG)
-    assert_allclose(there @ [1, 1, 1], 1, rtol=0, atol=1e-15)
-    assert_allclose(back @ there, np.eye(3), rtol=0, atol=1e-12)
-    # The sensor of a cube is a gamut under any light.
-    assert_allclose(
-        conversion(observer.sensor("sRGB", "A"), SRGB), np.eye(3), rtol=0, atol=3e-4
-    )
 
 
 @pytest.mark.parametrize(
@@ -162,7 +131,6 @@ def test_conversions_keep_white_and_are_invertible():
         (0.6, 0.3, 0.3, 0.6, 0.15, 0.06, 0.7, 0.3),
         (0.6, 0.3, 0.3, 0.3, 0.1, 0.3, *D65),
         (0.6, 0.3, 0.3, 0.6, 0.15, 0.06, 0.3, 0),
-        (np.nan, 0.3, 0.3, 0.6, 0.15, 0.06, *D65),
         (0.6, 0.3, 0.3, np.inf, 0.15, 0.06, *D65),
         (0.64, 0.33, 0.3, 0.6, 0.15, 0.06),
     ],
@@ -191,29 +159,6 @@ def test_mapped_colours_are_inside_and_colours_inside_are_unchanged(
     corners = np.stack(np.meshgrid([0.0, 1], [0.0, 1], [0.0, 1]), axis=-1).reshape(8, 3)
     for inside in (found, corners, np.random.default_rng(1).random((500, 3))):
         assert_array_equal(map_to_gamut(inside, gamut, method).rgb, inside)
-
-
-def test_oklab_keeps_hue_and_lightness(gamut, outside):
-    before = oklab(outside, gamut)
-    after = oklab(map_to_gamut(outside, gamut, "desaturate-oklab").rgb, gamut)
-    assert_allclose(after[:, 0], np.clip(before[:, 0], 0, 1), rtol=0, atol=3e-3)
-    chromatic = (
-        (np.hypot(*after[:, 1:].T) > 0.02) & (before[:, 0] > 0) & (before[:, 0] < 1)
-    )
-    turn = np.arctan2(after[:, 2], after[:, 1]) - np.arctan2(before[:, 2], before[:, 1])
-    turn = np.degrees((turn + np.pi) % (2 * np.pi) - np.pi)
-    assert chromatic.sum() > 1000
-    assert np.abs(turn[chromatic]).max() < 1.8
-
-
-@pytest.mark.parametrize("method", MOVERS)
-@pytest.mark.parametrize("name", GAMUTS)
-def test_mappings_are_continuous(method, name, outside):
-    near = outside + 1e-6 * np.random.default_rng(4).normal(0, 1, outside.shape)
-    here, there = (
-        map_to_gamut(rgb, GAMUTS[name], method).rgb for rgb in (outside, near)
-    )
-    assert_allclose(there, here, rtol=0, atol=1e-3)
 
 
 def test_procedure_of_the_thesis_gives_the_same_chromaticity(gamut):

@@ -67,12 +67,12 @@ def test_errors_are_weighted_sums(monkeypatch):
     )
 
 
-@pytest.mark.parametrize("count", [8, 12, 24])
+@pytest.mark.parametrize("count", [8, 24])
 def test_errors_of_few_entries_are_covered(count):
     """Of normal errors whose variance is that of the other ones, on average over many
     atlases.
     """
-    errors = np.random.default_rng(count).normal(size=(4000, count + 1))
+    errors = np.random.default_rng(count).normal(size=(2000, count + 1))
     squares = errors**2
     known = squares[:, :-1]
     others = (known.sum(axis=1, keepdims=True) - known) / (count - 1)
@@ -82,13 +82,6 @@ def test_errors_of_few_entries_are_covered(count):
     )
     assert within[0] == pytest.approx(0.68, abs=0.03)
     assert within[1] == pytest.approx(0.95, abs=0.015)
-
-
-def test_radii_of_few_entries_are_nearly_those_of_normal_errors():
-    few = expected_error(PLACES[:8], np.ones(8), np.zeros(8))
-    assert few.radii == pytest.approx((1, 2), rel=0.2)
-    assert expected_error(PLACES, np.zeros(12), np.zeros(12)).radii == (1, 2)
-    assert few.scale == pytest.approx(1, rel=0.1)
 
 
 def test_nearly_all_entries_are_within_the_familiar_distance():
@@ -102,16 +95,8 @@ def test_nearly_all_entries_are_within_the_familiar_distance():
 
 
 def test_distances_are_those_of_the_inverse_covariance():
-    rng = np.random.default_rng(3)
-    covariance = np.stack([np.cov(rng.normal(size=(2, 9))) for _ in range(20)])
-    difference = rng.normal(size=(20, 2))
-    plain = [
-        np.sqrt(each @ np.linalg.inv(matrix) @ each)
-        for each, matrix in zip(difference, covariance, strict=True)
-    ]
-    assert_allclose(mahalanobis(covariance, difference), plain, rtol=1e-9)
-    singular = np.diag([4.0, 0.0])[
-        None
-    ]  # huge but finite along directions without variance
-    assert mahalanobis(singular, np.array([[6.0, 0.0]])) == pytest.approx(3)
-    assert 1e100 < mahalanobis(singular, np.array([[0.0, 1.0]])) < np.inf
+    """Huge but finite along directions without variance."""
+    covariance = np.array([[[2.0, 1.0], [1.0, 2.0]], [[4.0, 0.0], [0.0, 0.0]]])
+    inside = mahalanobis(covariance, np.array([[1.0, 0.0], [6.0, 0.0]]))
+    assert inside == pytest.approx([np.sqrt(2 / 3), 3])
+    assert 1e100 < mahalanobis(covariance[1:], np.array([[0.0, 1.0]])) < np.inf

@@ -1,6 +1,7 @@
 """Sensors, lights, RGB spaces and codes by name, compared with colour-science."""
 
 import os
+from functools import partial
 
 import colour
 import numpy as np
@@ -13,9 +14,8 @@ from uplift.atlas.resampling import on_grid
 from uplift.atlas.sources import read_atlas
 from uplift.colorimetry import observer, tables
 from uplift.colorimetry.gamut import SRGB, conversion
-from uplift.colorimetry.observer import COMMON_SPACES, smallest_space
-from uplift.common.errors import OptionError, UnknownNameError
-from uplift.extras.colour.dominant import dominant_wavelengths
+from uplift.colorimetry.observer import smallest_space
+from uplift.common.errors import OptionError, UnknownNameError, UpliftError
 from uplift.extras.colour.spaces import (
     BUILT_IN,
     find_space,
@@ -26,7 +26,7 @@ from uplift.extras.colour.srgb import decode, encode, to_display_codes
 from uplift.extras.emission.lamps import known_lamps
 from uplift.lattice.lattice import axis_nodes
 
-SPACES = ("sRGB", "P3-D65", "ITU-R BT.2020", "ACEScg", "ProPhoto RGB")
+CONES = "Stockman & Sharpe 2 Degree Cone Fundamentals"
 NAMES = {
     "AP1": "ACEScg", "ACES - ACEScg": "ACEScg", "lin_ap1_scene": "ACEScg",
     "rec2020": "ITU-R BT.2020",
@@ -41,14 +41,6 @@ ENCODED = {
     "srgb_texture": colour.models.eotf_sRGB,
 }
 ENCODED["adobergb"] = lambda codes: codes ** (563 / 256)
-
-
-@pytest.mark.parametrize("space", SPACES)
-@pytest.mark.parametrize("illuminant", ["D65", "A", "FL11"])
-def test_perfect_reflector_is_white(space, illuminant):
-    sensor = observer.sensor(space, illuminant)
-    assert_allclose(sensor.rgb(np.ones(81)), 1, atol=1e-14)
-    assert sensor.light.white[1] == pytest.approx(1, abs=1e-15)
 
 
 def test_colours_agree_with_colour_science(sensor):
@@ -69,22 +61,11 @@ def test_colours_agree_with_colour_science(sensor):
     )  # powers differ between instruction sets
 
 
-@pytest.mark.parametrize("name", tables.names("observer"))
-def test_observers_agree_on_hues(name, sensor):
-    """Those of RGB and of cones, which XYZ are computed from by a matrix, are not
-    observers.
-    """
-    own = observer.sensor(observer=name)
-    rgb = np.array([[0, 0.35, 0.05], [0.7, 0.2, 0.02], [0.5, 0.5, 0.5]])
-    hues, *_ = dominant_wavelengths(own.xyz(rgb), own)
-    usual, *_ = dominant_wavelengths(sensor.xyz(rgb), sensor)
-    assert hues[:2] == pytest.approx(usual[:2], abs=8)
-    assert np.isnan([hues[2], usual[2]]).all()
-
-
-def test_cone_fundamentals_are_refused():
-    with raises(OptionError, "option"):
-        observer.sensor(observer="Stockman & Sharpe 2 Degree Cone Fundamentals")
+@pytest.mark.parametrize("illuminant", ["D65", "A", "FL11"])
+def test_a_perfect_reflector_is_white(illuminant):
+    sensor = observer.sensor("ProPhoto RGB", illuminant)
+    assert_allclose(sensor.rgb(np.ones(81)), 1, atol=1e-14)
+    assert sensor.light.white[1] == pytest.approx(1, abs=1e-15)
 
 
 @pytest.mark.parametrize("kind", ["observer", "camera", "illuminant"])
@@ -112,36 +93,32 @@ def test_srgb_nodes_agree_with_colour_science(dim):
 
 
 @pytest.mark.parametrize(
-    ("call", "code", "near"),
+    ("function", "argument", "code", "near"),
     [
-        (lambda: observer.sensor("sRBG"), "unknown-name", "'sRGB'"),
-        (lambda: observer.light("tungten"), "unknown-name", "'tungsten'"),
+        (observer.sensor, "sRBG", "unknown-name", "'sRGB'"),
+        (observer.light, "tungten", "unknown-name", "'tungsten'"),
         (
-            lambda: observer.light("D65", "CIE 1931 2 Degree"),
+            partial(observer.light, "D65"),
+            "CIE 1931 2 Degree",
             "unknown-name",
-            "'CIE 1931 2 Degree Standard",
+            "'CIE 1931",
         ),
-        (lambda: axis_nodes("srgbb", 4), "unknown-name", "'srgb'"),
-        (lambda: known_lamps().without(("A", "D66")), "unknown-name", "'D65'"),
+        (partial(axis_nodes, dim=4), "srgbb", "unknown-name", "'srgb'"),
+        (known_lamps().without, ("A", "D66"), "unknown-name", "'D65'"),
         *(
-            (lambda name=name: find_space(name), "unknown-name", "")
+            (find_space, name, "unknown-name", "")
             for name in ("raw", "", "a\0b", "a\n")
         ),
+        (look_up_space, "Utility - Raw", "unknown-name", ""),
+        (partial(observer.sensor, "sRGB", "D65"), CONES, "option", ""),
+        *((observer.light, name, "option", "") for name in ("999K", "25001K", "0K")),
     ],
 )
-def test_unknown_names_raise_with_near_names(call, code, near):
-    with raises(UnknownNameError, code) as caught:
-        call()
+def test_unknown_names_raise_with_near_names(function, argument, code, near):
+    with raises(UpliftError, code) as caught:
+        function(argument)
     assert near in caught.value.hint
-
-
-@pytest.mark.parametrize("name", ["Raw", "raw", "Utility - Raw", "data"])
-def test_a_data_space_of_opencolorio_is_not_suggested(name):
-    for find in (find_space, look_up_space):
-        with raises(UnknownNameError) as caught:
-            find(name)
-        assert name in str(caught.value)
-        assert "Raw" not in caught.value.hint
+    assert "Raw" not in caught.value.hint
 
 
 def test_cie_xyz_by_name_keeps_its_white():
@@ -150,26 +127,20 @@ def test_cie_xyz_by_name_keeps_its_white():
     assert_allclose(white, 1, rtol=0, atol=1e-3)
 
 
-@pytest.mark.parametrize("limits", [(360, 830, 1), (360, 1000, 5), (380, 780, 10)])
+@pytest.mark.parametrize("limits", [(360, 1000, 5), (380, 780, 10)])
 def test_other_ranges_agree_with_colour_science(limits, sensor):
     found = observer.on_range(sensor, *limits)
-    assert found.range == limits
-    assert_allclose(found.rgb(np.ones(len(found.wavelengths))), 1, rtol=0, atol=1e-14)
-    steep = colour.SpectralDistribution(
-        np.linspace(0.1, 0.9, len(found.wavelengths)), found.wavelengths
-    )
-    named = ("observer", sensor.observer), ("illuminant", sensor.illuminant)
-    aligned = (
+    steep = np.linspace(0.1, 0.9, len(found.wavelengths))
+    cmfs, power = (
         tables.aligned(kind, tables.look_up(kind, name), *limits)
-        for kind, name in named
+        for kind, name in (
+            ("observer", sensor.observer),
+            ("illuminant", sensor.illuminant),
+        )
     )
-    expected = colour.sd_to_XYZ(steep, *aligned, method="Integration") / 100
-    assert_allclose(found.xyz(found.rgb(steep.values)), expected, rtol=1e-9)
-    displays = observer.display_sensors(["D65", "A", "D65"], sensor.observer, *limits)
-    assert [each.range for each in displays] == [limits] * 2
-    assert_array_equal(
-        observer.light("D65", sensor.observer, *limits).xyz, found.light.xyz
-    )
+    distribution = colour.SpectralDistribution(steep, found.wavelengths)
+    expected = colour.sd_to_XYZ(distribution, cmfs, power, method="Integration") / 100
+    assert_allclose(found.xyz(found.rgb(steep)), expected, rtol=1e-9)
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -192,6 +163,7 @@ def test_spaces_convert_as_colour_science_does(name):
     assert found.agrees_with(sensor, encoded=False) == agrees
 
 
+@pytest.mark.skipif(os.name == "nt", reason="no pipes in the file system")
 def test_the_configuration_of_the_environment_comes_first(tmp_path, monkeypatch):
     path = tmp_path / "config.ocio"
     config = PyOpenColorIO.Config.CreateFromFile(BUILT_IN)
@@ -201,30 +173,19 @@ def test_the_configuration_of_the_environment_comes_first(tmp_path, monkeypatch)
     monkeypatch.setenv("OCIO", str(path))
     assert find_space("house").name == "house"
     assert observer.sensor("house").space == "ITU-R BT.2020"
-    path.with_name("bad.ocio").write_text("ocio_profile_version: 99")
-    monkeypatch.setenv("OCIO", str(path.with_name("bad.ocio")))
-    with raises(OptionError, "option"):
-        find_space("house")
+    path.with_name("bad").write_text("ocio_profile_version: 99")
+    os.mkfifo(path.with_name("pipe"))
+    for name, code in (("bad", "option"), ("pipe", "file-unreadable")):
+        monkeypatch.setenv("OCIO", str(path.with_name(name)))
+        with raises(OptionError, code):
+            find_space("house")
 
 
-def test_smallest_space():
+def test_the_smallest_space_has_all_colours():
     spectra = on_grid(read_atlas("macbeth"), observer.grid())
     assert smallest_space(spectra) == "Display P3"
     assert smallest_space(spectra[:17]) == "sRGB"
     assert smallest_space(np.eye(81)[28:29]) is None
-    u, v = np.moveaxis(
-        [
-            colour.xy_to_Luv_uv(colour.RGB_COLOURSPACES[name].primaries)
-            for name in COMMON_SPACES
-        ],
-        -1,
-        0,
-    )
-    areas = np.abs(
-        (u[:, 1] - u[:, 0]) * (v[:, 2] - v[:, 0])
-        - (v[:, 1] - v[:, 0]) * (u[:, 2] - u[:, 0])
-    )
-    assert (np.diff(areas) > 0).all()
 
 
 def test_transfer_curve_agrees_with_the_standard_and_is_invertible():
@@ -238,7 +199,7 @@ def test_transfer_curve_agrees_with_the_standard_and_is_invertible():
 
 
 @pytest.mark.parametrize(
-    ("space", "illuminant"), [("P3-D65", "D65"), ("ProPhoto RGB", "D50"), ("sRGB", "A")]
+    ("space", "illuminant"), [("ProPhoto RGB", "D50"), ("sRGB", "A")]
 )
 def test_other_spaces_keep_their_appearance(space, illuminant):
     """An sRGB sensor under the illuminant of the cube adapts by Bradford's transform
@@ -248,7 +209,6 @@ def test_other_spaces_keep_their_appearance(space, illuminant):
     rgb = 0.3 + 0.3 * np.random.default_rng(1).random((200, 3))  # pale enough for sRGB
     expected = 255 * encode(own.xyz(rgb) @ screen.xyz_to_rgb.T)
     assert np.abs(to_display_codes(rgb, own) - expected).max() < 0.6
-    assert_array_equal(to_display_codes([1, 1, 1], own), [255, 255, 255])
 
 
 @pytest.mark.parametrize(
@@ -256,20 +216,17 @@ def test_other_spaces_keep_their_appearance(space, illuminant):
 )
 def test_lights_have_everyday_names(name, standard):
     assert observer.light(name).name == standard
-    assert_array_equal(observer.illuminant_spd(name), observer.illuminant_spd(standard))
 
 
-@pytest.mark.parametrize("kelvin", [1000, 3200, 3999])
+@pytest.mark.parametrize("kelvin", [1000, 3999])
 def test_black_bodies_are_those_of_colour_science(kelvin):
+    """Theirs has a rounded constant."""
     theirs = colour.sd_blackbody(kelvin, colour.SpectralShape(380, 780, 5)).values
     ours = observer.illuminant_spd(f"{kelvin} k")
-    assert_allclose(
-        ours / ours[36], theirs / theirs[36], rtol=5e-4
-    )  # theirs has a rounded constant
-    objects = tables.look_up("illuminant", f"{kelvin}K").align(
-        colour.SpectralShape(380, 780, 5)
-    )
-    assert_allclose(objects.values / objects.values[36], ours / ours[36], rtol=1e-9)
+    assert_allclose(ours / ours[36], theirs / theirs[36], rtol=5e-4)
+    named = tables.look_up("illuminant", f"{kelvin}K")
+    named = named.align(colour.SpectralShape(380, 780, 5)).values
+    assert_allclose(named / named[36], ours / ours[36], rtol=1e-9)
 
 
 @pytest.mark.parametrize("nominal", [50, 55, 65, 75])
@@ -277,17 +234,3 @@ def test_temperatures_from_4000_k_are_cie_daylight(nominal):
     found = observer.illuminant_spd(f"{nominal}00K")
     assert_allclose(found, observer.illuminant_spd(f"D{nominal}"), rtol=0, atol=1e-3)
     assert observer.sensor("sRGB", f"{nominal}00.0 K").illuminant == f"{nominal}00K"
-
-
-@pytest.mark.parametrize("name", ["999K", "25001K", "0K"])
-def test_temperatures_out_of_range_are_refused(name):
-    with raises(OptionError, "option"):
-        observer.light(name)
-
-
-@pytest.mark.skipif(os.name == "nt", reason="no pipes in the file system")
-def test_a_configuration_that_never_ends_is_refused(tmp_path, monkeypatch):
-    os.mkfifo(tmp_path / "pipe.ocio")
-    monkeypatch.setenv("OCIO", str(tmp_path / "pipe.ocio"))
-    with raises(OptionError, "file-unreadable"):
-        find_space("sRGB")

@@ -3,14 +3,12 @@
 import subprocess
 import sys
 
-import colour
 import numpy as np
-import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
 from tests.helpers import raises
 from tools.ship_tables import tables as expected
-from uplift.colorimetry import observer, tables
+from uplift.colorimetry import tables
 from uplift.common.errors import UnknownNameError
 
 
@@ -25,15 +23,6 @@ def test_the_file_has_the_numbers_of_colour_science():
                 assert_allclose(
                     stored[name], values, rtol=1e-12, atol=1e-14, err_msg=name
                 )
-
-
-@pytest.mark.parametrize("white", ["D50", "A", "FL11"])
-def test_bradford_is_that_of_colour_science(white):
-    source, target = (observer.light(name).white for name in ("D65", white))
-    theirs = colour.adaptation.matrix_chromatic_adaptation_VonKries(
-        source, target, transform="Bradford"
-    )
-    assert_allclose(tables.bradford(source, target), theirs, rtol=1e-14)
 
 
 def test_what_the_file_lacks_comes_from_colour_science():

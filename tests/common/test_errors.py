@@ -11,7 +11,6 @@ from uplift.atlas.sources import read_atlas
 from uplift.common import errors
 from uplift.common.errors import (
     AtlasError,
-    UnknownNameError,
     UpliftError,
     UpliftWarning,
     unknown_name,
@@ -25,30 +24,9 @@ CLASSES = [
 ]
 
 
-def test_message_is_location_problem_and_hint():
-    error = AtlasError(
-        "no samples",
-        code="no-samples",
-        path="a.txt",
-        line=3,
-        entry="red",
-        hint="add some",
-    )
-    assert str(error) == "a.txt:3: entry 'red': no samples; add some"
-    assert error.where == "a.txt:3: entry 'red'"
-    assert error.to_json() == {
-        "code": "no-samples",
-        "where": "a.txt:3: entry 'red'",
-        "problem": "no samples",
-        "hint": "add some",
-    }
-
-
-def test_message_is_one_line_for_any_texts():
-    error = UpliftError(
-        "no such\nfile", path="a\x1b[2J", entry="b\u202e", hint="look\relsewhere"
-    )
-    assert str(error) == "a\\x1b[2J: entry 'b\\u202e': no such\\nfile; look\\relsewhere"
+def test_message_is_one_line_of_location_problem_and_hint():
+    error = AtlasError("no\nfile", path="a\x1b", line=3, entry="b\u202e", hint="look\r")
+    assert str(error) == "a\\x1b:3: entry 'b\\u202e': no\\nfile; look\\r"
     assert str(AtlasError("no samples")) == "no samples"
 
 
@@ -57,15 +35,9 @@ def test_every_error_class_is_exported_by_the_package(kind):
     assert getattr(uplift, kind.__name__) is kind
 
 
-def test_unknown_name_does_not_suggest_itself():
-    assert "'Raw'" not in unknown_name("Raw", ("Raw", "sRGB"), "RGB space").hint
-
-
 def test_unknown_name_suggests_near_names_regardless_of_case():
     error = unknown_name("d56", ("D50", "D55", "D65", "A"), "illuminant")
-    assert isinstance(error, UnknownNameError)
     assert error.code == "unknown-name"
-    assert error.problem == "unknown illuminant 'd56'"
     assert "'D65'" in error.hint
     assert "'A'" not in error.hint
 

@@ -6,14 +6,10 @@ import json
 import re
 from pathlib import Path
 
-import jax
-import jax.numpy as jnp
-import numpy as np
 import pytest
 
 from tests.conftest import ROOT
 from tests.helpers import run_python
-from uplift.common.compilation import compiled
 
 SOURCE = "uplift/common/compilation.py"
 PRODUCT = re.compile(r"stablehlo\.dot_general.*")
@@ -88,24 +84,3 @@ def test_nothing_else_compiles():
             text = re.sub(r'"""[\s\S]*?"""|#.*', "", path.read_text())
             if str(path) != str(ROOT / SOURCE):
                 assert not plain.search(text), path
-
-
-@pytest.mark.parametrize(
-    "product",
-    [
-        lambda a, b: a @ b,
-        lambda a, b: jnp.einsum("ij,kj->ik", a, b),
-        lambda a, b: jnp.tensordot(a, b, 1),
-        lambda a, b: jax.lax.map(lambda row: row @ b, a),
-    ],
-)
-def test_products_however_written_and_derived_are_in_full_precision(product):
-    matrix = np.ones((4, 4), np.float32)
-    total = lambda f: lambda a, b: (f(a, b) ** 2).sum()  # noqa: E731
-    plain = jax.jit(product).lower(matrix, matrix).as_text()
-    assert any(FULL not in line for line in products(plain))  # the pattern finds them
-    full = compiled(product)
-    for transformed in (full, jax.grad(total(full)), jax.hessian(total(full))):
-        found = products(jax.jit(transformed).lower(matrix, matrix).as_text())
-        assert found
-        assert all(FULL in line for line in found)

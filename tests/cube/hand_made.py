@@ -66,19 +66,3 @@ def hand_made(dim: int = 4, **changes: object) -> CubeData:
     )
     arrays = {name: changes.pop(name) for name in POINTS if name in changes}
     return replace(with_points(data, **arrays), **changes)
-
-
-def with_outside(data: CubeData, name: str = "cyan") -> CubeData:
-    """The cube with its first entry as one outside the RGB space, too."""
-    atlas = data.atlas
-    measured = None if atlas.measured is None else atlas.measured[:1]
-    spectra = replace(atlas.spectra, coefficients=atlas.spectra.coefficients[:1])
-    outside = AtlasTable(
-        *((name,), np.array([[-0.03, 0.25, 1.5]]), atlas.coefficients[:1]),
-        *(np.array([0.25]), np.array([0.1]), spectra, measured),
-    )
-    return replace(
-        data,
-        atlas=replace(atlas, outside=outside),
-        provenance={**data.provenance, "left_out": [name]},
-    )

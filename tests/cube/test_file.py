@@ -6,25 +6,23 @@ import numpy as np
 import pytest
 from safetensors.numpy import save_file
 
-from tests.cube.cube_files import forge, header_length, with_header
-from tests.cube.hand_made import with_outside
-from tests.helpers import raises
+from tests.cube.cube_files import forge, header_length
+from tests.helpers import raises, with_points
 from uplift.common.errors import CubeFileError, OutputError
 from uplift.cube.container import KEY
 from uplift.cube.file import VERSION, read, write
 from uplift.cube.schema import ARRAYS, MAX_LIGHTS, METADATA
 from uplift.lattice.point_table import Status
 
-FLIPS = 500
-CUTS = 60
+FLIPS = 60
 STORED = [name for name in ARRAYS if name not in ("points", "sensor.sensitivities")]
 """Arrays of the cube of these tests."""
 
 
 @pytest.fixture
-def data(small_cube, plain_cube):
-    outside = with_outside(small_cube.data)
-    return dataclasses.replace(outside, families=plain_cube.data.families)
+def data(small_cube, cyan_cube, plain_cube):
+    data = dataclasses.replace(cyan_cube.data, families=plain_cube.data.families)
+    return with_points(data, round=small_cube.data.points.round)
 
 
 @pytest.fixture
@@ -84,13 +82,7 @@ def test_missing_files_folders_and_devices_are_refused(tmp_path):
 
 @pytest.mark.parametrize(
     "content",
-    [
-        b"",
-        b"\0" * 8,
-        b"\xff" * 64,
-        b"{}",
-        b"Some text, and long enough to be a header length\n",
-    ],
+    [b"", b"\0" * 8, b"\xff" * 64, b"{}", b"Text, long enough for a header\n"],
 )
 def test_files_of_other_formats_are_refused(tmp_path, content):
     path = tmp_path / "other"
@@ -98,84 +90,70 @@ def test_files_of_other_formats_are_refused(tmp_path, content):
     refused(path, "not-a-cube")
 
 
+def nested(depth):
+    return '{"a":' * depth + "1" + "}" * depth
+
+
+def cube_with(value):
+    return f'{{"format":"uplift cube","version":{VERSION},"a":{value}}}'
+
+
+JSON = ["{}", "[]", "null", "{", *map(cube_with, (nested(40), nested(100_000)))]
+JSON += map(cube_with, (r'{"\ud800": 1}', "NaN", "1e999", "9" * 5000))
+
+
 @pytest.mark.parametrize(
-    "metadata",
-    [None, {}, {"other": "1"}, {KEY: "{}"}, {KEY: "[]"}, {KEY: "null"}, {KEY: "{"}],
+    "metadata", [None, {"other": "1"}, *({KEY: text} for text in JSON)]
 )
 def test_other_safetensors_files_are_refused(tmp_path, metadata):
+    """JSON beyond the limits is refused before the digest."""
     path = tmp_path / "other.safetensors"
     save_file({"weights": np.zeros((2, 2))}, path, metadata=metadata)
     refused(path, "not-a-cube")
 
 
-def test_truncated_and_longer_files_are_refused(path, content):
-    rng = np.random.default_rng(1)
-    lengths = {
-        *range(0, 16),
-        *rng.integers(0, len(content), CUTS).tolist(),
-        len(content) - 1,
-    }
-    for broken in [content[:length] for length in lengths] + [
-        content + more for more in (b"\0", b" ", content)
-    ]:
-        path.write_bytes(broken)
-        refused(path)
-
-
-def test_every_flipped_bit_is_refused(path, content):
+def test_truncated_longer_and_damaged_files_are_refused(path, content):
+    """Of every part, any flipped bit."""
     rng = np.random.default_rng(2)
     start = 8 + header_length(content)
-    in_header = rng.integers(0, start, FLIPS // 2)
-    in_arrays = rng.integers(start, len(content), FLIPS // 2)
-    for place, bit in zip(
-        [*in_header, *in_arrays], rng.integers(0, 8, FLIPS).tolist(), strict=True
-    ):
-        broken = bytearray(content)
-        broken[place] ^= 1 << bit
-        path.write_bytes(broken)
+    broken = [content[:length] for length in (*range(16), start, len(content) - 1)]
+    broken += [content + more for more in (b"\0", content)]
+    for first, last in ((0, 8), (8, start), (start, len(content))):
+        for place in rng.integers(first, last, FLIPS):
+            flipped = bytearray(content)
+            flipped[place] ^= 1 << rng.integers(8)
+            broken.append(flipped)
+    for other in broken:
+        path.write_bytes(other)
         refused(path)
 
 
-HEADERS = [
-    (b'"F64"', kind) for kind in (b'"BF16"', b'"F8_E4M3"', b'"I64"', b'"C64"', b'"???"')
-]
-HEADERS += [
-    (b"[512,9]", shape)
-    for shape in (b"[9,512]", b"[-512,-9]", b"[4294967296,4294967296]")
-]
-HEADERS += [(b'"F64"', b'{"a":' * 100_000)]
+@pytest.fixture
+def refused_metadata(data, tmp_path):
+    """Read the cube after a change of its metadata, and return the error."""
 
+    def refused_metadata(change, code="cube-file"):
+        path = forge(data, tmp_path / "cube", lambda _, metadata: change(metadata))
+        return refused(path, code)
 
-@pytest.mark.parametrize(("old", "new"), HEADERS, ids=lambda text: text[:20].decode())
-def test_forged_headers_are_refused(path, content, old, new):
-    text = content[8 : 8 + header_length(content)]
-    assert old in text
-    path.write_bytes(with_header(content, text.replace(old, new)))
-    refused(path)
+    return refused_metadata
 
 
 @pytest.mark.parametrize("version", [0, 2, 99, "3", None])
-def test_the_error_names_both_format_versions(data, tmp_path, version):
-    path = forge(
-        data,
-        tmp_path / "cube",
-        lambda tensors, metadata: metadata.update(version=version),
+def test_the_error_names_both_format_versions(refused_metadata, version):
+    error = refused_metadata(
+        lambda metadata: metadata.update(version=version), "cube-version"
     )
-    error = refused(path, "cube-version")
     assert str(version) in error.problem
     assert str(VERSION) in error.problem
 
 
 @pytest.mark.parametrize("provenance", [{"uplift": "9.8.7"}, {}, {"uplift": 3}, None])
 def test_an_unknown_feature_is_refused_with_the_version_that_wrote_it(
-    data, tmp_path, provenance
+    refused_metadata, provenance
 ):
-    def change(tensors, metadata):
-        metadata["features"] += ["polarised"]
-        metadata["provenance"] = provenance
-
-    path = forge(data, tmp_path / "cube", change)
-    error = refused(path, "cube-feature")
+    change = {"features": ["polarised"], "provenance": provenance}
+    error = refused_metadata(lambda metadata: metadata.update(change), "cube-feature")
     assert "polarised" in error.problem
     assert ("9.8.7" in error.hint) == (provenance == {"uplift": "9.8.7"})
 
@@ -199,13 +177,11 @@ def test_arrays_that_are_missing_or_of_another_form_are_refused(data, tmp_path, 
 def test_numbers_out_of_range_are_refused(forged, name):
     stored = ARRAYS[name]
     kind = np.dtype(stored.types[0])
-    limits = (
-        (np.iinfo(kind).min, np.iinfo(kind).max) if kind.kind in "iu" else (-1e31, 1e31)
-    )
-    values = [limits[0]] if stored.low > limits[0] else []
-    values += [limits[1]] if stored.high < limits[1] else []
-    values += [-1e-30] if kind.kind == "f" and stored.low == 0 else []
-    values += [np.nan] if kind.kind == "f" else []
+    if kind.kind == "f":
+        values = {-1e31, 1e31, np.nan, -1e-30 if stored.low == 0 else np.nan}
+    else:
+        limits = {np.iinfo(kind).min, np.iinfo(kind).max}
+        values = {limit for limit in limits if not stored.low <= limit <= stored.high}
     assert values or name in ("round", "families.family")
     for value in values:
         forged(name, with_value(value, -1))
@@ -222,9 +198,7 @@ def test_numbers_out_of_range_are_refused(forged, name):
         ("sensor.cmfs", lambda array: 2 * array[::-1]),
         ("sensor.xyz_to_rgb", lambda array: array[[0, 0, 0]]),
         ("sensor.decoding", lambda array: array[::-1]),
-        ("sensor.wavelengths", lambda array: 1e3 * array),
         ("sensor.wavelengths", lambda array: 1e-6 * array),
-        ("sensor.wavelengths", lambda array: 1.5 * array),
         ("sensor.wavelengths", lambda array: array + 1),
         ("sensor.wavelengths", with_value(421, 8)),
     ],
@@ -244,101 +218,45 @@ MODELS = [
 ]
 
 
-@pytest.mark.parametrize("model", MODELS)
-def test_unknown_models_are_refused(data, tmp_path, model):
-    path = forge(
-        data,
-        tmp_path / "cube",
-        lambda tensors, metadata: metadata.update(model=model, entry_model=model),
-    )
-    refused(path, "cube-file")
-
-
-@pytest.fixture
-def refused_metadata(data, tmp_path):
-    """Read the cube after a change of its metadata, and return the problem."""
-    return lambda change: (
-        refused(
-            forge(data, tmp_path / "cube", lambda tensors, metadata: change(metadata)),
-            "cube-file",
-        ).problem
-    )
-
-
 @pytest.mark.parametrize(
     "key", [key for key in METADATA if key not in ("format", "version")]
 )
 def test_metadata_that_are_missing_or_of_another_type_are_named(refused_metadata, key):
-    assert key in refused_metadata(lambda metadata: metadata.pop(key))
+    assert key in refused_metadata(lambda metadata: metadata.pop(key)).problem
     for value in (None, 10**400, [{}], {"options": 1}, "x" * 2000, True):
-        assert f"metadata.{key}" in refused_metadata(
+        error = refused_metadata(
             lambda metadata, value=value: metadata.update({key: value})
         )
+        assert f"metadata.{key}" in error.problem
+
+
+LIGHTS = [{}] * (MAX_LIGHTS + 1)
+PROVENANCE = [
+    {"options": "dim 8"},
+    {"options": {"shortest": None}},
+    {"options": {"lights": [{}]}},
+    {"improvements": [{"step": "a", "tried": 1.0, "mended": 1}]},
+    {"looks": [{"name": "a", "rgb": [0, 0, 0], "weight": 1, "lights": LIGHTS}]},
+    {"scene": "photo.png"},
+]
 
 
 @pytest.mark.parametrize(
-    "provenance",
+    "values",
     [
-        {"options": "dim 8"},
-        {"improvements": [{"step": "a", "tried": 1.0, "mended": 1}]},
-        {
-            "looks": [
-                {
-                    "name": "a",
-                    "rgb": [0, 0, 0],
-                    "weight": 1,
-                    "lights": [{}] * (MAX_LIGHTS + 1),
-                }
-            ]
-        },
-        {"scene": "photo.png"},
-        *({"options": {"shortest": value}} for value in ("380", None, [380], {})),
-        *({"options": {"lights": value}} for value in ({}, [{}], [None])),
+        *({"threshold": value} for value in (0, 5e-324, 1e-13, 0.2, -1e-4)),
+        *({"model": model, "entry_model": model} for model in MODELS),
+        *({"provenance": value} for value in PROVENANCE),
+        {"dim": 7},
+        {"entries": ["grey"] * 23},
+        {"features": ["camera"]},
+        {"model": {"name": "moments", "count": 9.0, "phase": PHASE}},
+        {"\x1b]0;title\x07": 1},
     ],
+    ids=str,
 )
-def test_provenance_of_another_type_is_refused(refused_metadata, provenance):
-    key = f"metadata.provenance.{next(iter(provenance))}"
-    assert key in refused_metadata(
-        lambda metadata: metadata["provenance"].update(provenance)
-    )
-
-
-@pytest.mark.parametrize(
-    ("key", "value"),
-    [
-        *(("threshold", value) for value in (0, 5e-324, 1e-13, 0.2, -1e-4)),
-        ("dim", 7),
-        ("entries", ["grey"] * 23),
-        ("features", ["camera"]),
-        ("model", {"name": "moments", "count": 9.0, "phase": PHASE}),
-        ("\x1b]0;title\x07", 1),
-    ],
-)
-def test_metadata_out_of_range_are_refused(refused_metadata, key, value):
-    refused_metadata(lambda metadata: metadata.update({key: value}))
-
-
-def nested(depth):
-    return '{"a":' * depth + "1" + "}" * depth
-
-
-@pytest.mark.parametrize(
-    "value", [nested(40), nested(100_000), r'{"\ud800": 1}', "NaN", "1e999", "9" * 5000]
-)
-def test_json_beyond_the_limits_is_refused_before_the_digest(tmp_path, value):
-    text = f'{{"format":"uplift cube","version":3,"a":{value}}}'
-    save_file({"nodes": np.zeros(2)}, tmp_path / "cube", metadata={KEY: text})
-    refused(tmp_path / "cube", "not-a-cube")
-
-
-def test_unknown_provenance_of_later_versions_is_kept(data, tmp_path):
-    later = {"a": [1, None, True]}
-    path = forge(
-        data,
-        tmp_path / "cube",
-        lambda tensors, metadata: metadata["provenance"].update(later=later),
-    )
-    assert read(path).provenance["later"] == later
+def test_metadata_out_of_range_are_refused(refused_metadata, values):
+    refused_metadata(lambda metadata: metadata.update(values))
 
 
 @pytest.mark.parametrize(

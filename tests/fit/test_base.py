@@ -8,15 +8,16 @@ from numpy.testing import assert_allclose
 
 from uplift.colorimetry import observer
 from uplift.colorimetry.delta_e import delta_e_spectra
+from uplift.colorimetry.illuminants import SCENE_LIGHTS
 from uplift.colorimetry.sensor import in_unit_cube
 from uplift.fit.base import learn_base, match_spectra
 from uplift.fit.entries import FittedEntries
 from uplift.fit.families import Family, shipped_library
 from uplift.fit.problem import Problem
-from uplift.models.model import evaluate, reflectance
+from uplift.models.model import evaluate
 from uplift.models.moments import Moments, moment_matrix
 
-LIGHTS = tuple(observer.light(name) for name in ("D65", "A", "FL2", "FL11", "LED-B3"))
+LIGHTS = tuple(map(observer.light, SCENE_LIGHTS))
 GRID = observer.grid()
 DARK = np.array(
     [
@@ -27,11 +28,6 @@ DARK = np.array(
         (0, 0.05, 0),
     ]
 )
-
-
-@pytest.fixture(scope="module")
-def problem(sensor):
-    return Problem(sensor, Moments(9), LIGHTS)
 
 
 def entries_of(sensor, measured):
@@ -50,35 +46,33 @@ def answers(problem, sensor, base, rgb):
     )
 
 
-@pytest.mark.parametrize("name", ["tcs", "vs", "rawtoaces"])
+@pytest.mark.parametrize("name", ["tcs", "rawtoaces"])
 def test_unseen_families_are_predicted_better_than_by_smooth_spectra(
     problem, sensor, name
 ):
     (unseen,) = [family for family in shipped_library() if family.name == name]
     known = entries_of(sensor, unseen.measured)
     learnt = learn_base(problem, shipped_library([name]))[0]
+    spectra, smooth = (
+        answers(problem, sensor, base, known.rgb)
+        for base in (learnt, learn_base(problem)[0])
+    )
     for light in LIGHTS[1:]:
-        error, smooth_error = (
-            delta_e_spectra(
-                light, answers(problem, sensor, base, known.rgb), known.measured
-            ).mean()
-            for base in (learnt, learn_base(problem)[0])
-        )
+        error = delta_e_spectra(light, spectra, known.measured).mean()
+        smooth_error = delta_e_spectra(light, smooth, known.measured).mean()
         assert error < 0.97 * smooth_error, light.name
 
 
 @pytest.mark.parametrize(
     ("model", "space", "illuminant"),
     [
-        (Moments(4), "sRGB", "D65"),
         (Moments(17, 380.0, 780.0, "vision"), "sRGB", "FL11"),
         (Moments(9), "ProPhoto RGB", "A"),
     ],
-    ids=lambda value: getattr(value, "count", value),
+    ids=str,
 )
 def test_spectra_are_valid_and_continuous_in_every_space(model, space, illuminant):
-    sensor = observer.sensor(space, illuminant)
-    problem = Problem(sensor, model, LIGHTS)
+    problem = Problem(observer.sensor(space, illuminant), model, LIGHTS)
     base = learn_base(problem, shipped_library())[0]
     rgb = np.random.default_rng(1).random((3000, 3)) ** 2
     coefficients = base.coefficients(rgb)
@@ -87,30 +81,10 @@ def test_spectra_are_valid_and_continuous_in_every_space(model, space, illuminan
     assert np.abs(moved - coefficients).max() < 1e-3
 
 
-@pytest.mark.parametrize(
-    ("families", "worst", "median"), [((), 0.02, 0.001), (None, 0.03, 0.002)]
-)
-def test_base_spectra_have_nearly_the_colour(problem, sensor, families, worst, median):
-    base = learn_base(problem, shipped_library() if families is None else families)[0]
-    rgb = np.random.default_rng(3).random((500, 3)) ** 2
-    off = np.abs(
-        sensor.rgb(
-            reflectance(problem.model, base.coefficients(rgb), sensor.wavelengths)
-        )
-        - rgb
-    ).max(axis=1)
-    assert off.max() < worst
-    assert np.median(off) < median
-
-
 def test_dark_saturated_colours_stay_dark_outside_the_visible_range(problem, sensor):
     for families in ((), shipped_library()):
-        assert (
-            answers(problem, sensor, learn_base(problem, families)[0], DARK)[
-                :, 76
-            ].max()
-            < 0.4
-        )
+        spectra = answers(problem, sensor, learn_base(problem, families)[0], DARK)
+        assert spectra[:, 76].max() < 0.4
     from_grey = problem.solve(DARK, np.zeros((len(DARK), 9)), 192).multipliers
     assert evaluate(problem.model, from_grey, sensor.wavelengths)[:, 76].max() > 0.9
 
@@ -129,10 +103,6 @@ def test_an_atlas_raises_the_relevance_of_families_like_it(problem, sensor):
     entries = entries_of(sensor, like.measured[own])
     related, unrelated = learn_base(problem, [family, noise], entries)[1]
     assert related > unrelated + 0.2
-    again = entries_of(sensor, like.measured[own[::-1]])
-    assert learn_base(problem, [family, noise], again)[1] == pytest.approx(
-        (related, unrelated), abs=1e-9
-    )
 
 
 def test_spectra_of_the_atlas_are_no_evidence_for_themselves(problem, sensor):
@@ -149,31 +119,17 @@ def test_spectra_of_the_atlas_are_no_evidence_for_themselves(problem, sensor):
     assert_allclose(found, smooth, atol=0.06)
 
 
-MODELS = [Moments(9), Moments(17), Moments(9, 380.0, 780.0, "vision")]
-
-
-@pytest.mark.parametrize("model", MODELS, ids=str)
-def test_moments_of_sampled_spectra_are_those_of_the_model(model):
-    multipliers = (
-        np.random.default_rng(2).normal(size=(20, model.count))
-        / (1 + np.arange(model.count)) ** 2
+@pytest.mark.parametrize(
+    "model", [Moments(9), Moments(17), Moments(9, 380.0, 780.0, "vision")], ids=str
+)
+def test_measured_spectra_have_moments_that_keep_their_colours(model):
+    library = np.clip(shipped_library()[0].measured, 1e-3, 1 - 1e-3)
+    moments = library @ moment_matrix(model, GRID)
+    plain = evaluate(model, model.from_storage(moments), GRID)
+    assert_allclose(plain @ moment_matrix(model, GRID), moments, atol=3e-4)
+    matched = evaluate(model, match_spectra(model, GRID, library, LIGHTS), GRID)
+    plain_error, matched_error = (
+        np.max([delta_e_spectra(light, spectra, library) for light in LIGHTS], axis=0)
+        for spectra in (plain, matched)
     )
-    spectra = evaluate(model, multipliers, GRID)
-    assert_allclose(
-        spectra @ moment_matrix(model, GRID), model.to_storage(multipliers), atol=3e-4
-    )
-
-
-@pytest.mark.parametrize("model", MODELS, ids=str)
-def test_colours_of_measured_spectra_survive(model):
-    measured = np.clip(shipped_library()[0].measured, 1e-3, 1 - 1e-3)
-    plain = model.from_storage(measured @ moment_matrix(model, GRID))
-    matched = match_spectra(model, GRID, measured, LIGHTS)
-
-    def worst(multipliers):
-        spectra = evaluate(model, multipliers, GRID)
-        return np.max(
-            [delta_e_spectra(light, spectra, measured) for light in LIGHTS], axis=0
-        ).mean()
-
-    assert worst(matched) < 0.7 * worst(plain)
+    assert matched_error.mean() < 0.7 * plain_error.mean()

@@ -8,10 +8,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
-from tests.conftest import ATLASES
 from tools import ship_library
-from uplift.atlas.resampling import resample
-from uplift.atlas.sources import read_atlas
 from uplift.colorimetry import observer
 from uplift.fit.families import (
     FILE,
@@ -22,7 +19,6 @@ from uplift.fit.families import (
     learn_relevance,
 )
 from uplift.fit.kriging import Points
-from uplift.lab.look_alikes import families_like
 
 RNG = np.random.default_rng(5)
 LIGHTS = [observer.light(name) for name in ("A", "FL11")]
@@ -56,64 +52,36 @@ def test_the_shipped_file_is_the_output_of_the_tool(tmp_path):
     assert written.stat().st_size < 1_200_000
 
 
-@pytest.mark.parametrize(
-    ("atlas", "families"), [("macbeth", ("checker",)), ("cie2017", ("cie2017",))]
-)
-def test_families_are_found_by_their_spectra(sensor, atlas, families):
-    measured = resample(read_atlas(ATLASES / f"{atlas}.txt"), sensor.wavelengths).values
-    assert set(families) <= set(families_like(measured))
-
-
 def samples(count):
     locations = RNG.uniform([20, -30, -30], [90, 30, 30], (count, 3))
-    return Points(
-        locations,
-        RNG.normal(size=(count, 4)),
-        RNG.integers(1, 4, count),
-        np.arange(count),
-    )
+    counts = RNG.integers(1, 4, count)
+    return Points(locations, RNG.normal(size=(count, 4)), counts, np.arange(count))
 
 
 def matern(first, second):
-    scaled = (
-        np.sqrt(3) * np.linalg.norm(first[:, None] - second[None], axis=-1) / LENGTH
-    )
+    apart = np.linalg.norm(first[:, None] - second[None], axis=-1)
+    scaled = np.sqrt(3) * apart / LENGTH
     return (1 + scaled) * np.exp(-scaled)
 
 
-def conditional_mean(families, points, lab):
-    """Mean of shared deviation plus the related share of each family's own, given all
+def test_it_is_the_conditional_mean():
+    """Of the shared deviation plus the related share of each family's own, given all
     samples.
     """
-    where = np.concatenate([each.locations for each in points])
-    what = np.concatenate([each.deviations for each in points])
-    covariance = matern(where, where)
-    cross = matern(lab, where)
-    first = 0
-    for family, each in zip(families, points, strict=True):
-        own = slice(first, first + len(each.locations))
-        covariance[own, own] += family.spread * matern(each.locations, each.locations)
-        covariance[own, own] += np.diag(NUGGET / each.counts)
-        cross[:, own] *= 1 + family.related * family.spread
-        first = own.stop
-    return cross @ np.linalg.solve(covariance, what)
-
-
-@pytest.mark.parametrize("sizes", [(12, 30), (1, 7, 0), (25,)])
-def test_it_is_the_conditional_mean(sizes):
+    spreads, related, sizes = (5, 1, 2), (0, 0.5, 1), (12, 30, 0)
+    families = [Family("", None, *pair) for pair in zip(spreads, related, strict=True)]
     points = [samples(size) for size in sizes]
-    families = [Family("", None, *pair) for pair in ((5, 0), (1, 0.5), (2, 1))][
-        : len(sizes)
-    ]
+    where, what, counts, _ = map(np.concatenate, zip(*points, strict=True))
+    family = np.repeat(range(3), sizes)
+    own = np.where(family[:, None] == family, np.take(spreads, family), 0)
+    covariance = (1 + own) * matern(where, where) + np.diag(NUGGET / counts)
     lab = RNG.uniform([0, -60, -60], [100, 60, 60], (50, 3))
+    cross = matern(lab, where) * (1 + np.multiply(spreads, related))[family]
+    expected = cross @ np.linalg.solve(covariance, what)
     kriging = krige_families(families, points)
-    assert_allclose(
-        kriging(lab, np.ones(len(sizes))),
-        conditional_mean(families, points, lab),
-        atol=1e-9,
-    )
-    relevance = RNG.uniform(0, 2, len(sizes))
-    expected = np.einsum("f,fnk->nk", relevance, kriging.contributions(lab))
+    assert_allclose(kriging(lab, np.ones(3)), expected, atol=1e-9)
+    relevance = RNG.uniform(0, 2, 3)
+    expected = np.tensordot(relevance, kriging.contributions(lab), 1)
     assert_allclose(kriging(lab, relevance), expected, atol=1e-12)
 
 
@@ -129,18 +97,14 @@ def test_relevances_of_an_explained_atlas_are_found(truth):
     assert_allclose(learn(measured + 1e-4 * OTHERS[0]), truth, atol=0.1)
 
 
-def distances(amplitude, rows=slice(None)):
-    """Distance from 1 of relevances that are truly 2 and 0, over atlases."""
-    measured = PLAIN + 2 * PARTS[0]
-    return np.mean(
-        [
-            np.abs(learn(measured + amplitude * other, rows) - 1).mean()
-            for other in OTHERS
-        ]
-    )
-
-
 def test_what_no_family_explains_keeps_relevances_near_1():
-    assert distances(0.001) > 0.9
-    assert distances(0.5) < 0.5
-    assert distances(0.05, slice(0, 3)) < distances(0.05) - 0.1
+    """They are truly 2 and 0."""
+    measured = PLAIN + 2 * PARTS[0]
+
+    def distance(amplitude, rows=slice(None)):
+        found = [learn(measured + amplitude * other, rows) for other in OTHERS]
+        return np.abs(np.array(found) - 1).mean()
+
+    assert distance(0.001) > 0.9
+    assert distance(0.5) < 0.5
+    assert distance(0.05, slice(0, 3)) < distance(0.05) - 0.1

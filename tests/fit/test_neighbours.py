@@ -16,8 +16,3 @@ def test_few_and_many_points_have_the_same_neighbours(monkeypatch, order):
     monkeypatch.setattr(neighbours, "DENSE", 100)
     assert_allclose(nearest_other(points, order), few, rtol=1e-12)
     assert few[7] == few[200] == 0
-
-
-def test_a_point_alone_has_no_neighbour():
-    assert nearest_other(np.zeros((1, 3))).tolist() == [np.inf]
-    assert nearest_other(np.zeros((0, 3))).shape == (0,)

@@ -15,29 +15,23 @@ from numpy.testing import assert_allclose, assert_array_equal
 import uplift
 from tests.conftest import MACBETH
 from tests.helpers import quiet_build
-from uplift.atlas.resampling import on_grid
 from uplift.colorimetry import observer
 from uplift.colorimetry.delta_e import delta_e_1976, delta_e_spectra, rgb_to_lab
 from uplift.colorimetry.illuminants import SCENE_LIGHTS
-from uplift.colorimetry.sensor import in_unit_cube
 from uplift.fit.base import learn_base
-from uplift.fit.entries import fit_entries
-from uplift.fit.families import shipped_library
-from uplift.fit.prior import Prior, fit_prior
+from uplift.fit.prior import Prior
 from uplift.fit.problem import Problem
 from uplift.fit.seeds import (
     CORNER_SHARE,
     DIMS,
     FAR,
     NEAR,
-    choose_lattice,
-    full_entry,
     initial_guess,
-    lattice_error,
     near_entry,
     seed,
 )
-from uplift.lattice.lattice import AXES, Lattice, axis_nodes
+from uplift.lattice.lattice import AXES, Lattice
+from uplift.lookup.interpolate import lattice_spectra
 from uplift.models.model import reflectance
 from uplift.models.moments import Moments
 
@@ -54,19 +48,6 @@ atlases = arrays(
 def test_all_corners_of_the_cells_of_entries_are_seeds_once(rgb):
     corners = LATTICE.cell_corners(LATTICE.cell(rgb)[0])
     assert_array_equal(np.sort(seed(LATTICE, rgb).points), np.unique(corners))
-
-
-@given(atlases, st.randoms(use_true_random=False))
-def test_seeds_do_not_depend_on_the_order_of_the_atlas(rgb, random):
-    order = list(range(len(rgb)))
-    random.shuffle(order)
-    here = seed(LATTICE, rgb)
-    there = seed(LATTICE, rgb[order])
-    owners = dict(zip(here.points, here.entry, strict=True))
-    assert owners == {
-        point: order[entry]
-        for point, entry in zip(there.points, there.entry, strict=True)
-    }
 
 
 def test_the_nearer_of_two_entries_owns_the_primary_point():
@@ -90,71 +71,41 @@ def test_the_share_of_the_entry_falls_from_near_to_far_corners(prior):
     """Less for entries with narrow boxes."""
     shares = []
     for dim in (6, 12, 16, 24):
-        lattice = Lattice(np.linspace(0, 1, dim))
-        seeds = seed(lattice, RGB)
-        nodes = lattice.points[seeds.points]
-        own = ENTRIES[seeds.entry]
-        distance = delta_e_1976(
-            *(rgb_to_lab(prior.sensor, rgb) for rgb in (nodes, RGB[seeds.entry]))
+        seeds = seed(Lattice(np.linspace(0, 1, dim)), RGB)
+        nodes = seeds.lattice.points[seeds.points]
+        entry = seeds.entry
+        apart = delta_e_1976(
+            rgb_to_lab(prior.sensor, nodes), rgb_to_lab(prior.sensor, RGB[entry])
         )
-        width = seeds.half_width[seeds.entry]
-        share = CORNER_SHARE * width * np.clip((FAR - distance) / (FAR - NEAR), 0, 1)
+        share = np.clip((FAR - apart) / (FAR - NEAR), 0, 1)
+        share *= CORNER_SHARE * seeds.half_width[entry]
         start = initial_guess(seeds.points, nodes, prior, seeds, ENTRIES, near_entry)
-        mixed = share[:, None] * MODEL.to_storage(own) + (
-            1 - share[:, None]
-        ) * MODEL.to_storage(prior(nodes))
+        own = MODEL.to_storage(ENTRIES[entry])
+        expected = MODEL.to_storage(prior(nodes))
+        mixed = expected + share[:, None] * (own - expected)
         assert_allclose(MODEL.to_storage(start), mixed, atol=1e-6)
         shares.extend(share)
     assert (np.array(shares) == 0).sum() >= 5
     assert ((np.array(shares) > 0) & (np.array(shares) < 1)).sum() >= 4
 
 
-def test_all_other_points_start_from_the_prior(prior):
-    seeds = seed(LATTICE, RGB)
-    points = np.setdiff1d(np.arange(LATTICE.size), seeds.points)
-    start = initial_guess(
-        points, LATTICE.points[points], prior, seeds, ENTRIES, full_entry
-    )
-    assert_array_equal(start, prior(LATTICE.points[points]))
+def lattice_errors(data):
+    """Largest ΔE00 between entries and the lattice at their colours, boxes left out."""
+    at = data.sensor.wavelengths
+    found = lattice_spectra(data.model, data.lattice, data.points, data.atlas.rgb, at)
+    own = reflectance(data.model, data.atlas.coefficients, at)
+    lights = map(observer.light, SCENE_LIGHTS)
+    return np.max([delta_e_spectra(light, found, own) for light in lights], axis=0)
 
 
-@pytest.fixture(scope="module")
-def stage(sensor):
-    """Problem, prior and the entries of the ColorChecker."""
-    spectra = on_grid(uplift.read_atlas(MACBETH), sensor.wavelengths)
-    spectra = spectra[in_unit_cube(sensor.rgb(spectra))]
-    lights = tuple(map(observer.light, SCENE_LIGHTS))
-    problem = Problem(sensor, Moments(9), lights, lights[1])
-    entries = fit_entries(problem, spectra, sensor.rgb(spectra))
-    return (
-        problem,
-        fit_prior(problem, entries, learn_base(problem, shipped_library(), entries)[0]),
-        entries,
-    )
-
-
-def test_lattice_error_predicts_the_error_of_the_cube(stage, sensor):
-    """The lattice of the cube is evaluated at the entries without their boxes."""
-    problem, prior, entries = stage
-    data = quiet_build(MACBETH, dim=16, seed_corners=True).data
-    trial = lattice_error(problem, data.lattice, prior, entries)
-    corners, weights = data.lattice.corners(entries.rgb)
-    spectra = reflectance(data.model, data.points.coefficients, sensor.wavelengths)
-    answered = (weights[..., None] * spectra[corners]).sum(axis=1)
-    own = reflectance(data.model, data.atlas.coefficients, sensor.wavelengths)
-    plain = np.max(
-        [delta_e_spectra(lit, answered, own) for lit in problem.lights], axis=0
-    )
-    assert_allclose(trial, plain, atol=1e-3)
-
-
-def test_the_smallest_lattice_that_keeps_all_entries_is_chosen(stage):
-    problem, prior, entries = stage
-    _, dim, lost = choose_lattice(problem, prior, entries, 0.5)
-    assert lost == 0
+def test_the_smallest_lattice_that_keeps_all_entries_is_chosen():
+    options = {"seed_corners": True, "exact_entries": True}
+    chosen = quiet_build(MACBETH, dim="auto", **options).data
+    assert lattice_errors(chosen).max() <= 0.5
+    dim = DIMS[DIMS.index(chosen.lattice.dim) - 1]
     for axis in AXES:
-        smaller = Lattice(axis_nodes(axis, DIMS[DIMS.index(dim) - 1]))
-        assert lattice_error(problem, smaller, prior, entries).max() > 0.5
+        smaller = quiet_build(MACBETH, dim=dim, axis=axis, **options).data
+        assert lattice_errors(smaller).max() > 0.5
 
 
 def test_without_an_atlas_the_smallest_lattice_is_chosen():

@@ -29,7 +29,6 @@ from tests.fuzz.fuzzing import Random, choose
 from tests.fuzz.programs import c_reflectances
 from uplift.atlas.sources import write_atlas
 from uplift.colorimetry import tables
-from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Array, Mask
 from uplift.common.errors import UpliftWarning
 from uplift.common.files import write_text
@@ -49,7 +48,6 @@ OBSERVERS = (
     "CIE 1964 10 Degree Standard Observer",
 )
 CAMERAS = ("Nikon 5100 (NPL)", "Sigma SDMerill (NPL)")
-SHAPES = ("smooth", "equal", "dark", "black", "white", "spiky")
 EXACT = 1e-4
 SAME = 1e-3
 DEEP = 1e-4
@@ -66,7 +64,7 @@ next cell.
 """
 AT = (385.0, 450.0, 525.0, 600.0, 675.0, 775.0)
 COUNTS = ((3, 3), (4, 9), (5, 17), (9, 9), (9, 13), (17, 17))
-RANGES = ((380, 780, 5), (380, 780, 10), (360, 830, 5), (320, 900, 10))
+RANGES = ((380, 780, 5), (360, 830, 5), (380, 780, 10), (320, 900, 10))
 
 
 @dataclass(frozen=True)
@@ -108,93 +106,64 @@ def little_work() -> Iterator[None]:
 
 def odd_options(random: Random, kind: Kind) -> dict[str, Any]:
     """Return options of a build, without atlas, library and looks."""
-    space = choose(random, SPACES)
-    model = choose(random, ("moments", "moments", "moments", "sigmoid"))
-    dim = choose(random, kind.dims)
-    illuminant = choose(random, ("D65", "D65", "A", "E", "D50", "FL2", "FL11"))
-    observer = choose(random, CAMERAS if space == "camera" else OBSERVERS)
-    # Cameras are tabulated at steps of 5 nm.
-    measured = [limits for limits in kind.ranges if space != "camera" or limits[2] == 5]
-    shortest, longest, step = choose(random, measured)
     options: dict[str, Any] = {
-        "space": space,
-        "dim": dim,
-        "model": model,
-        "illuminant": illuminant,
-        "observer": observer,
-        "shortest": shortest,
-        "longest": longest,
-        "step": step,
+        "space": choose(random, SPACES),
+        "dim": choose(random, kind.dims),
+        "model": choose(random, ("moments", "moments", "moments", "sigmoid")),
+        "illuminant": choose(random, ("D65", "D65", "A", "E", "D50", "FL2", "FL11")),
         "axis": choose(random, ("srgb", "linear")),
         "warp": choose(random, ("none", "vision")),
         # Learning is slow.
         "prior": choose(random, ("learnt", "smooth", "smooth", "smooth")),
     }
-    if model == "moments":
-        coefficients, entry_coefficients = choose(random, kind.counts)
-        options["coefficients"] = coefficients
-        options["entry_coefficients"] = entry_coefficients
+    is_camera = options["space"] == "camera"
+    options["observer"] = choose(random, CAMERAS if is_camera else OBSERVERS)
+    # Cameras are tabulated at steps of 5 nm.
+    limits = choose(random, kind.ranges[:2] if is_camera else kind.ranges)
+    options |= zip(("shortest", "longest", "step"), limits, strict=True)
+    if options["model"] == "moments":
+        counts = choose(random, kind.counts)
+        options |= zip(("coefficients", "entry_coefficients"), counts, strict=True)
     return options
 
 
-def odd_atlas(random: Random, size: int) -> uplift.Atlas:
-    """Return an atlas of 1, 2 or 300 entries of one shape."""
-    shape = choose(random, SHAPES)
+def odd_atlas(random: Random, size: int, path: Path) -> Path:
+    """Write an atlas of entries of one shape: smooth, equal, dark, black, white or
+    spiky.
+    """
     at = np.arange(380.0, 781.0, 10)
-    middle = random.uniform(380, 780, size)
-    width = random.uniform(5, 200, size)
-    level = random.uniform(0.02, 0.9, size)
-    values = (
-        level[:, None] * np.exp(-(((at - middle[:, None]) / width[:, None]) ** 2))
-        + 0.02
+    middle = random.uniform(380, 780, (size, 1))
+    width = random.uniform(5, 200, (size, 1))
+    level = random.uniform(0.02, 0.9, (size, 1))
+    smooth = level * np.exp(-(((at - middle) / width) ** 2)) + 0.02
+    shapes = (
+        smooth,
+        smooth[:1] + 0 * smooth,
+        smooth / 100,
+        0 * smooth,
+        0 * smooth + 1,
+        random.uniform(0, 1, smooth.shape).round(),
     )
-    if shape == "spiky":
-        values = random.uniform(0, 1, values.shape).round()
-    elif shape != "smooth":
-        values = {
-            "equal": values[:1] + 0 * values,
-            "dark": values / 100,
-            "black": 0 * values,
-            "white": 0 * values + 1,
-        }[shape]
-    return uplift.Atlas(
-        [uplift.Entry(f"e{k}", at, row) for k, row in enumerate(values)]
-    )
+    values = choose(random, shapes)
+    entries = [uplift.Entry(f"e{k}", at, row) for k, row in enumerate(values)]
+    write_atlas(uplift.Atlas(entries), path)
+    return path
 
 
-def distance_to_solid(
-    sensor: Sensor, rgb: Array, spectra: Array, normals: Array
-) -> Array:
-    """Return how far, max |linear RGB|, colours (n, 3) are from those of reflectances,
-    by proof or linear program.
-
-    A spectrum (n, N) of the colour proves that there is one. A plane that has all
-    colours of reflectances on one side, with one of the ``normals`` (F, 3), proves how
-    far away a colour is: n · r - max n · W g, over Σ |n|. A linear program judges those
-    of which neither is known to 1e-6.
+def distance_to_solid(matrix: Array, rgb: Array, near: Array) -> Array:
+    """Return the least max |linear RGB| from colours (n, 3) that reflectances in [0, 1]
+    have, by a linear program where a known reflectance is not as ``near`` as 1e-9.
     """
-    near = np.abs(sensor.rgb(np.clip(spectra, 0, 1)) - rgb).max(axis=1)
-    supports = np.maximum(normals @ sensor.matrix, 0).sum(axis=1)
-    beyond = rgb @ normals.T - supports
-    best = beyond.argmax(axis=1)
-    least = beyond.max(axis=1) / np.abs(normals[best]).sum(axis=1)
-    distance = np.where(least > 1e-6, least, near)
-    for row in np.flatnonzero((near > 1e-9) & (least < 1e-6)):
-        distance[row] = miss(sensor.matrix, rgb[row])
-    return distance
-
-
-def miss(matrix: Array, rgb: Array) -> float:
-    """Return the least max |linear RGB| from a colour (3,) that reflectances in [0, 1]
-    have, by a linear program.
-    """
+    distance = near.copy()
     count = matrix.shape[1]
     off = np.ones((3, 1))
     rows = np.block([[matrix, -off], [-matrix, -off]])
     cost = np.append(np.zeros(count), 1)
     limits = [(0, 1)] * count + [(0, None)]
-    right = np.concatenate([rgb, -rgb])
-    return float(linprog(cost, A_ub=rows, b_ub=right, bounds=limits).fun)
+    for row in np.flatnonzero(near > 1e-9):
+        right = np.concatenate([rgb[row], -rgb[row]])
+        distance[row] = linprog(cost, A_ub=rows, b_ub=right, bounds=limits).fun
+    return distance
 
 
 def colours(random: Random, cube: uplift.Cube) -> np.ndarray:
@@ -218,25 +187,15 @@ def broken_laws(seed: int, folder: Path, kind: Kind = SMALL) -> Iterator[str]:
     size = choose(random, kind.sizes)
     given: dict[str, Any] = {"atlas": None}
     if size:
-        given["atlas"] = folder / "atlas.csv"
-        write_atlas(odd_atlas(random, size), given["atlas"])
-    if (
-        options["prior"] == "learnt"
-        and options.get("coefficients", 3) > 3
-        and random.random() < 0.3
-    ):
-        given["library"] = folder / "library.csv"
-        write_atlas(odd_atlas(random, 12), given["library"])
-    if (
-        options.get("entry_coefficients", 3) > 3
-        and options["space"] != "camera"
-        and random.random() < 0.15
-    ):
+        given["atlas"] = odd_atlas(random, size, folder / "atlas.csv")
+    is_learnt = options["prior"] == "learnt" and options.get("coefficients", 3) > 3
+    if is_learnt and random.random() < 0.5:
+        given["library"] = odd_atlas(random, 12, folder / "library.csv")
+    if options.get("entry_coefficients", 3) > 3 and options["space"] != "camera":
         light = "A" if options["illuminant"] != "A" else "D65"
-        given["looks"] = uplift.Look(
-            tuple(random.uniform(0.2, 0.6, 3)),
-            {light: tuple(random.uniform(0.2, 0.6, 3))},
-        )
+        own, other = random.uniform(0.2, 0.6, (2, 3))
+        if random.random() < 0.15:
+            given["looks"] = uplift.Look(tuple(own), {light: tuple(other)})
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", UpliftWarning)
         cube = uplift.build(**given, **options)
@@ -269,8 +228,8 @@ def _colour_laws(cube: uplift.Cube, rgb: Array, folder: Path) -> Iterator[str]:
         if not are_reflectances(cube.reflectance(rgb, mode=mode)):
             yield f"{mode}: reflectances outside [0, 1]"
     spectra = cube.reflectance(rgb)
-    off = distance_to_solid(sensor, rgb, spectra, cube.data.solid.normals)
     error = np.abs(sensor.rgb(spectra) - rgb).max(axis=1)
+    off = distance_to_solid(sensor.matrix, rgb, error)
     for worst in np.flatnonzero((off < 1e-9) & (error > EXACT)):
         yield f"realisable colour {rgb[worst].tolist()} missed by {error[worst]:.1e}"
     expected = cube.reflectance(rgb, AT)
@@ -376,13 +335,9 @@ def main(first: int, count: int) -> int:
     """
     laws = Counter[str]()
     KEPT.mkdir(parents=True, exist_ok=True)
+    limits = {"colour": EXACT, "programs": SAME, "sums": SUM, "boundary": DEEP}
     figures = {"command": "make nightly", "environment": environment(), "first": first}
-    figures["limits"] = {
-        "colour": EXACT,
-        "programs": SAME,
-        "sums": SUM,
-        "boundary": DEEP,
-    }
+    figures["limits"] = limits
     for seed in range(first, first + count):
         findings = broken(seed, LARGE if seed % 50 == 0 else SMALL)
         laws.update(law.split(":")[1].strip() for law in findings)

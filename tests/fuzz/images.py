@@ -8,10 +8,11 @@ them cannot be used.
 
 import sys
 import tempfile
-from collections.abc import Callable
-from dataclasses import dataclass, field, replace
+from collections import ChainMap
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import colour
 import numpy as np
@@ -38,315 +39,253 @@ WIDTH = 7
 LIGHTS = light_reader(uplift.load_emission())
 SURFACES = SurfaceReader(sensor=LIGHTS.sensor)
 HALF_MAX = 65504.0
+TOLERANCE = 3e-3
+"""Largest error, relative to the largest component of colours above 1."""
+SRGB = colour.RGB_COLOURSPACES["sRGB"].copy()
+SRGB.use_derived_transformation_matrices(True)
+BT2020 = "ITU-R BT.2020"
+GAMUTS = ("sRGB", BT2020, P3, ADOBE, "ProPhoto RGB")
 Curve = Callable[[Array], Array]
+
+
+def xyz_to_srgb(xyz: Array, white: Array) -> Array:
+    """Convert XYZ (n, 3), relative to a white, to linear sRGB, white to white."""
+    return np.asarray(colour.XYZ_to_RGB(xyz, SRGB, white, "Bradford"))
 
 
 @dataclass(frozen=True)
 class Space:
-    """A statement that can be used: primaries and white by x, y, and the curve of
+    """A statement that can be used: primaries and white by name, and the curve of
     codes.
     """
 
-    gamut: str | tuple[float, ...] = "sRGB"
+    gamut: str = "sRGB"
     curve: Curve = colour.models.eotf_sRGB
+
+    @property
+    def white(self) -> Array:
+        return np.asarray(colour.RGB_COLOURSPACES[self.gamut].whitepoint)
+
+    @property
+    def to_xyz(self) -> Array:
+        space = colour.RGB_COLOURSPACES[self.gamut]
+        matrix = colour.normalised_primary_matrix(space.primaries, space.whitepoint)
+        return np.asarray(matrix)
+
+    @property
+    def numbers(self) -> tuple[float, ...]:
+        """x, y of red, green, blue and white."""
+        space = colour.RGB_COLOURSPACES[self.gamut]
+        return tuple(map(float, (*np.ravel(space.primaries), *space.whitepoint)))
 
     def to_srgb(self, codes: Array) -> Array:
         """Convert codes (n, 3) in [0, 1] to linear sRGB."""
         return self.linear_to_srgb(np.asarray(self.curve(codes)))
 
     def linear_to_srgb(self, rgb: Array) -> Array:
-        """Convert linear RGB (n, 3) to linear sRGB, white to white."""
-        space = rgb_space(self.gamut)
-        xyz = (
-            rgb @ colour.normalised_primary_matrix(space.primaries, space.whitepoint).T
-        )
-        return xyz_to_srgb(xyz, space.whitepoint)
+        """Convert linear RGB (n, 3) to linear sRGB."""
+        return xyz_to_srgb(rgb @ self.to_xyz.T, self.white)
 
 
-def rgb_space(gamut: str | tuple[float, ...]) -> Any:
-    """Return the space of colour-science of a name or of eight numbers."""
-    if isinstance(gamut, str):
-        return colour.RGB_COLOURSPACES[gamut]
-    return colour.RGB_Colourspace(
-        "a", np.reshape(gamut[:6], (3, 2)), np.array(gamut[6:])
-    )
+Row = tuple[Any, Space | None]
+"""A statement as its format stores it, and its space, None if it cannot be used."""
 
 
-def xyz_to_srgb(xyz: Array, white: Array) -> Array:
-    """Convert XYZ (n, 3), relative to a white of Y = 1, to linear sRGB, adapted by
-    Bradford.
-    """
-    srgb = colour.RGB_COLOURSPACES["sRGB"]
-    from_white = colour.xy_to_XYZ(white)
-    to_white = colour.xy_to_XYZ(srgb.whitepoint)
-    adapt = colour.adaptation.matrix_chromatic_adaptation_VonKries(
-        from_white, to_white, transform="Bradford"
-    )
-    to_rgb = np.linalg.inv(
-        colour.normalised_primary_matrix(srgb.primaries, srgb.whitepoint)
-    )
-    return xyz @ (to_rgb @ adapt).T
-
-
-@dataclass
-class Drawn:
-    """An image in a file, and linear sRGB (n, 3) that it states; ``assumed`` if a
-    statement cannot be used.
+class Drawn(NamedTuple):
+    """An image in a file, and linear sRGB (n, 3) that it states: as it is stored, and
+    divided by alpha.
     """
 
     path: Path
-    text: str
+    stated: "Statements"
     light: Array
-    """Colours as they are stored."""
     straight: Array
-    """Colours divided by alpha."""
-    assumed: bool = False
-    tolerance: float = 1e-3
 
 
-def numbers(gamut: str) -> tuple[float, ...]:
-    """x, y of red, green, blue and white of a space."""
-    space = colour.RGB_COLOURSPACES[gamut]
-    return tuple(map(float, (*np.ravel(space.primaries), *space.whitepoint)))
+class Statements:
+    """Statements of an image, drawn from groups of them in the order in which they
+    count, one of each group or none.
+    """
 
+    def __init__(self, random: Random, *groups: Sequence[Row]) -> None:
+        drawn = [choose(random, group) for group in groups if random.random() < 0.4]
+        self.stored = [stored for stored, _ in drawn]
+        self.spaces = [space for _, space in drawn]
 
-def hlg(codes: Array) -> Array:
-    return colour.models.eotf_BT2100_HLG(codes, L_B=0, L_W=1000) / 100
+    def first_usable(self) -> Space:
+        """Return the first usable space, else sRGB."""
+        return next((space for space in self.spaces if space), Space())
 
-
-def narrow(bits: int) -> Curve:
-    """Widen codes of narrow range."""
-    step = 2 ** (bits - 8)
-    return lambda codes: np.maximum(
-        (codes * (2**bits - 1) - 16 * step) / (219 * step), 0
-    )
-
-
-POINTS: dict[tuple[int, ...], Space | None] = {
-    (1, 13, 0, 1): Space(),
-    (12, 13, 0, 1): Space(P3),
-    (9, 14, 0, 1): Space("ITU-R BT.2020", colour.models.oetf_inverse_BT2020),
-    (9, 8, 0, 1): Space("ITU-R BT.2020", np.asarray),
-    (9, 16, 0, 1): Space(
-        "ITU-R BT.2020", lambda codes: colour.models.eotf_ST2084(codes) / 100
-    ),
-    (12, 16, 0, 1): Space(P3, lambda codes: colour.models.eotf_ST2084(codes) / 100),
-    (1, 16, 0, 1): Space("sRGB", lambda codes: colour.models.eotf_ST2084(codes) / 100),
-    (9, 18, 0, 1): Space("ITU-R BT.2020", hlg),
-    (1, 4, 0, 1): Space("sRGB", lambda codes: codes**2.2),
-    (1, 18, 0, 1): None,
-    (2, 2, 0, 1): None,
-    (9, 16, 9, 1): None,
-    (1, 13, 0, 0): Space(),
-    (12, 4, 0, 0): Space(P3, lambda codes: codes**2.2),
-}
-PROFILES = {
-    "P3": (by_matrix(P3, SRGB_TABLE), Space(P3)),
-    "Adobe": (
-        by_matrix(ADOBE, GAMMA),
-        Space(ADOBE, lambda codes: codes ** (round(2.2 * 256) / 256)),
-    ),
-    "table": (by_matrix("sRGB", b"mft2 and so on"), None),
-}
-INTEROP = {
-    "lin_ap1_scene": Space("ACEScg"),
-    "lin_rec2020_scene": Space("ITU-R BT.2020"),
-    "lin_p3d65_scene": Space(P3),
-    "house_of_colours": None,
-}
-GAMMAS = (1.0, 0.45455, 0.55556, 0.5)
-GAMUTS = ("sRGB", "ITU-R BT.2020", P3, ADOBE, "ProPhoto RGB")
+    @property
+    def assumed(self) -> bool:
+        """Whether the first statement cannot be used."""
+        return self.spaces[:1] == [None]
 
 
 def power(exponent: float) -> Curve:
     return lambda codes: codes**exponent
 
 
-@dataclass
-class Statements:
-    """Spaces that a file states, in the order in which they count, None if one cannot
-    be used, and their description.
-    """
-
-    spaces: list[Space | None] = field(default_factory=list)
-    text: str = ""
-
-    def add(self, text: str, space: Space | None, first: bool = False) -> None:
-        self.text += f" {text}"
-        self.spaces.insert(0 if first else len(self.spaces), space)
-
-    def first_usable(self) -> tuple[Space, bool]:
-        """Return the first usable space, else sRGB, and whether one before it cannot be
-        used.
-        """
-        for index, space in enumerate(self.spaces):
-            if space is not None:
-                return space, index > 0
-        return Space(), bool(self.spaces)
+def pq(codes: Array) -> Array:
+    return np.asarray(colour.models.eotf_ST2084(codes) / 100)
 
 
-def draw_codes(random: Random, channels: int, dtype: str) -> Array:
-    codes = random.integers(
-        0, np.iinfo(dtype).max, (1, WIDTH, channels), dtype=dtype, endpoint=True
+def hlg(codes: Array) -> Array:
+    return np.asarray(colour.models.eotf_BT2100_HLG(codes, L_B=0, L_W=1000) / 100)
+
+
+def narrow(curve: Curve, bits: int) -> Curve:
+    """The curve of codes of narrow range."""
+    step = 2 ** (bits - 8)
+    return lambda codes: curve(
+        np.maximum((codes * (2**bits - 1) - 16 * step) / (219 * step), 0)
     )
-    codes[0, 0] = 0
-    codes[0, 1] = np.iinfo(dtype).max
-    return codes
 
 
-def first_three(codes: Array) -> Array:
-    """Return codes (n, 3) of the colours of codes (1, n, channels)."""
-    if codes.shape[2] > 2:
-        return codes[0, :, :3]
-    return np.repeat(codes[0, :, :1], 3, axis=1)
+def points(bits: int) -> list[Row]:
+    """Code points of images of that many bits."""
+    return [
+        (files.cicp(*numbers), space)
+        for numbers, space in {
+            (1, 13, 0, 1): Space(),
+            (12, 13, 0, 1): Space(P3),
+            (9, 14, 0, 1): Space(BT2020, colour.models.oetf_inverse_BT2020),
+            (9, 8, 0, 1): Space(BT2020, np.asarray),
+            (12, 16, 0, 1): Space(P3, pq),
+            (9, 16, 0, 1): Space(BT2020, pq),
+            (9, 18, 0, 1): Space(BT2020, hlg),
+            (1, 4, 0, 1): Space("sRGB", power(2.2)),
+            (1, 18, 0, 1): None,
+            (2, 2, 0, 1): None,
+            (9, 16, 9, 1): None,
+            (1, 13, 0, 0): Space("sRGB", narrow(colour.models.eotf_sRGB, bits)),
+            (12, 4, 0, 0): Space(P3, narrow(power(2.2), bits)),
+        }.items()
+    ]
+
+
+SPACES = [Space(gamut) for gamut in GAMUTS]
+PROFILES: list[Row] = [
+    (by_matrix(P3, SRGB_TABLE), Space(P3)),
+    (by_matrix(ADOBE, GAMMA), Space(ADOBE, power(round(2.2 * 256) / 256))),
+]
+UNUSABLE_PROFILE: Row = (by_matrix("sRGB", b"mft2 and so on"), None)
+CHUNKS: list[Row] = [(files.SRGB, Space())]
+CHUNKS += [
+    (files.iccp(profile), space) for profile, space in [*PROFILES, UNUSABLE_PROFILE]
+]
+GAMMA_AND_GAMUT: list[Row] = [(files.chrm(space.numbers), space) for space in SPACES]
+for value in (1.0, 0.45455, 0.5):
+    chunk = files.gama(value)
+    GAMMA_AND_GAMUT.append((chunk, Space("sRGB", power(1 / value))))
+    GAMMA_AND_GAMUT += [
+        (chunk + files.chrm(space.numbers), Space(space.gamut, power(1 / value)))
+        for space in SPACES
+    ]
+CHROMATICITIES: list[Row] = [
+    ({"chromaticities": space.numbers}, space) for space in SPACES
+]
+INTEROP: list[Row] = [
+    ({"colorInteropID": "lin_ap1_scene"}, Space("ACEScg")),
+    ({"colorInteropID": "lin_rec2020_scene"}, Space(BT2020)),
+    ({"colorInteropID": "house_of_colours"}, None),
+]
+EXIF_ADOBE = Space(ADOBE, power(563 / 256))
+STRONG_EXIF: list[Row] = [
+    (
+        {"exif": {0xA001: (3, [65535])}, "interoperability": {1: (2, b"R03\0")}},
+        EXIF_ADOBE,
+    ),
+    ({"exif": {0xA001: (3, [2])}}, EXIF_ADOBE),
+]
+WEAK_EXIF: list[Row] = [
+    ({"exif": {0xA001: (3, [1])}}, Space()),
+    ({"exif": {0xA001: (3, [65535])}}, None),
+]
+
+
+def tags(depth: int) -> list[Row]:
+    """Tags of TIFF: primaries and white, a transfer function of that many bits, both,
+    and a white alone.
+    """
+    table = np.rint(65535 * np.linspace(0, 1, 1 << depth) ** 1.8).astype(int).tolist()
+    transfer = {301: (3, table)}
+    rows: list[Row] = [({318: (5, [0.3457, 0.3585])}, None)]
+    rows.append(({301: (3, table * 3)}, Space("sRGB", power(1.8))))
+    for space in SPACES:
+        primaries = {319: (5, space.numbers[:6]), 318: (5, space.numbers[6:])}
+        rows.append((primaries, space))
+        rows.append((primaries | transfer, Space(space.gamut, power(1.8))))
+    return rows
+
+
+def draw_codes(random: Random, dtype: str, channels: int) -> tuple[Array, Array]:
+    """Draw codes (1, n, channels), and the shares (n, 3) of their colours."""
+    largest = np.iinfo(dtype).max
+    shape = (1, WIDTH, channels)
+    codes = random.integers(0, largest, shape, dtype=dtype, endpoint=True)
+    codes[0, :2] = [[0], [largest]]
+    colours = codes[0, :, :3] if channels > 2 else codes[0, :, :1].repeat(3, axis=1)
+    return codes, colours / largest
 
 
 def draw_png(random: Random, folder: Path) -> Drawn:
     """Draw a PNG file with any of the chunks of colours."""
     dtype = choose(random, ("uint8", "uint16"))
     channels = int(random.integers(1, 5))
-    codes = draw_codes(random, channels, dtype)
-    stated = Statements()
-    chunks = [
-        *draw_points(random, stated, bits=8 * codes.itemsize),
-        *draw_profile(random, stated, channels),
-        *draw_gamma_and_gamut(random, stated),
-    ]
-    order = random.permutation(len(chunks))
+    codes, shares = draw_codes(random, dtype, channels)
+    # libpng drops profiles of RGB from grey images.
+    chunks = CHUNKS if channels > 2 else CHUNKS[:1]
+    stated = Statements(random, points(8 * codes.itemsize), chunks, GAMMA_AND_GAMUT)
+    stored = random.permutation(np.array(stated.stored, dtype=object))
     path = folder / "a.png"
     after = files.gama(0.3) if random.random() < 0.2 else b""  # misplaced: ignored
-    path.write_bytes(files.png_bytes(codes, *(chunks[k] for k in order), after=after))
-    space, assumed = stated.first_usable()
-    light = space.to_srgb(first_three(codes) / np.iinfo(dtype).max)
-    text = f"{dtype} {channels} channels{stated.text}"
-    return Drawn(path, text, light, light, assumed)
-
-
-def draw_points(random: Random, stated: Statements, bits: int) -> list[bytes]:
-    """Draw the chunk cICP or none."""
-    if random.random() >= 0.4:
-        return []
-    points = choose(random, list(POINTS))
-    space = POINTS[points]
-    if space is not None and not points[3]:
-        curve = space.curve
-        space = replace(space, curve=lambda codes: curve(narrow(bits)(codes)))
-    stated.add(f"cICP {points}", space)
-    return [files.cicp(*points)]
-
-
-def draw_profile(random: Random, stated: Statements, channels: int) -> list[bytes]:
-    """Draw the chunk iCCP, sRGB or none."""
-    # libpng drops profiles of RGB from grey images.
-    if random.random() < 0.3 and channels > 2:
-        name = choose(random, list(PROFILES))
-        profile, space = PROFILES[name]
-        stated.add(f"iCCP {name}", space)
-        return [files.iccp(profile)]
-    if random.random() < 0.3:
-        stated.add("sRGB", Space())
-        return [files.SRGB]
-    return []
-
-
-def draw_gamma_and_gamut(random: Random, stated: Statements) -> list[bytes]:
-    """Draw the chunks gAMA and cHRM, one of them or none: together they state a
-    space.
-    """
-    chunks = []
-    text = []
-    space = Space()
-    has_gamma = random.random() < 0.5
-    has_gamut = random.random() < 0.4
-    if has_gamma:
-        gamma = choose(random, GAMMAS)
-        chunks.append(files.gama(gamma))
-        space = replace(space, curve=power(1 / gamma))
-        text.append(f"gAMA {gamma}")
-    if has_gamut:
-        gamut = choose(random, GAMUTS)
-        chunks.append(files.chrm(numbers(gamut)))
-        space = replace(space, gamut=gamut)
-        text.append(f"cHRM {gamut}")
-    if chunks:
-        stated.add(" ".join(text), space)
-    return chunks
+    path.write_bytes(files.png_bytes(codes, *stored, after=after))
+    light = stated.first_usable().to_srgb(shares)
+    return Drawn(path, stated, light, light)
 
 
 def draw_exr(random: Random, folder: Path) -> Drawn:
     """Draw an OpenEXR file of RGB, XYZ or grey, with alpha or without."""
     kind = choose(random, ("RGB", "XYZ", "XYZ", "Y"))
-    layer = choose(random, ("", "", "diffuse.")) if kind != "Y" else ""
     dtype = choose(random, (np.float32, np.float16))
-    stated = Statements()
-    header, gamut = draw_header(random, stated, kind)
+    # A space that is named is of RGB alone.
+    groups = (CHROMATICITIES,) if kind == "XYZ" else (INTEROP, CHROMATICITIES)
+    stated = Statements(random, *groups)
+    space = stated.first_usable()
+    header = dict(ChainMap(*stated.stored))
+    if random.random() < 0.3:
+        header["whiteLuminance"] = choose(random, (100.0, 80.0))
     luminance = header.get("whiteLuminance", 1.0)
-    space = rgb_space(gamut)
     stored = random.random((WIDTH, 3)) * choose(random, (1, 1, 1, 20))
-    stored[:2] = [[0, 0, 0], [1, 1, 1]]
     if kind == "XYZ":
-        to_xyz = colour.normalised_primary_matrix(space.primaries, space.whitepoint)
-        stored = stored @ to_xyz.T * luminance
+        stored = stored @ space.to_xyz.T * luminance
     if kind == "Y":
         stored = np.repeat(stored[:, :1], 3, axis=1)
-    has_alpha = random.random() < 0.6
     alpha = np.ones(WIDTH)
-    if has_alpha:
-        alpha, factors = draw_alpha(random)
-        stored = stored * factors[:, None]
+    if has_alpha := random.random() < 0.6:
+        alpha = random.random(WIDTH)
+        alpha[2:5] = [0, 1e-6, 0.01]
+        is_light = choose(random, (False, True))  # without opacity
+        stored[[0, 1, 4, 5, 6]] *= alpha[[0, 1, 4, 5, 6], None]
+        stored[2:4] *= 1 if is_light else alpha[2:4, None]
     stored = stored.astype(dtype)
     alpha = alpha.astype(dtype)
-    planes = {
-        layer + letter: stored[None, :, k].copy() for k, letter in enumerate(kind)
-    }
+    planes = {letter: stored[None, :, k].copy() for k, letter in enumerate(kind)}
     if has_alpha:
-        planes[layer + "A"] = alpha[None]
+        planes["A"] = alpha[None]
     path = folder / "a.exr"
     attributes = {"type": OpenEXR.scanlineimage, **header}
     OpenEXR.File(attributes, planes).write(str(path))
     held = stored.astype(float)
     divided = divide_by_alpha(held, alpha[:, None].astype(float))
-    usable, assumed = stated.first_usable()
 
     def to_srgb(values: Array) -> Array:
         if kind == "XYZ":
-            return xyz_to_srgb(values / luminance, np.array(space.whitepoint))
-        return usable.linear_to_srgb(values)
+            return xyz_to_srgb(values / luminance, space.white)
+        return space.linear_to_srgb(values)
 
-    text = f"{layer}{kind} {dtype.__name__} {header} alpha {has_alpha}"
-    tolerance = 3e-3 if dtype is np.float16 else 1e-3
-    return Drawn(path, text, to_srgb(held), to_srgb(divided), assumed, tolerance)
-
-
-def draw_header(
-    random: Random, stated: Statements, kind: str
-) -> tuple[dict[str, Any], str | tuple[float, ...]]:
-    """Draw the attributes of OpenEXR about colours; also return the primaries."""
-    header: dict[str, Any] = {}
-    gamut = choose(random, GAMUTS)
-    if random.random() < 0.6:
-        header["chromaticities"] = numbers(gamut)
-        stated.add("chromaticities", Space(gamut))
-    else:
-        gamut = "sRGB"
-    if kind != "XYZ" and random.random() < 0.3:
-        name = header["colorInteropID"] = choose(random, list(INTEROP))
-        stated.add(name, INTEROP[name], first=True)
-    if random.random() < 0.3:
-        header["whiteLuminance"] = choose(random, (100.0, 80.0))
-    return header, gamut
-
-
-def draw_alpha(random: Random) -> tuple[Array, Array]:
-    """Draw alpha (n,) and factors (n,) of the colours: some are light without
-    opacity.
-    """
-    alpha = random.random(WIDTH)
-    alpha[2:5] = [0, 1e-6, 0.01]
-    factors = alpha.copy()
-    if random.random() < 0.5:
-        factors[2:4] = 1
-    return alpha, factors
+    return Drawn(path, stated, to_srgb(held), to_srgb(divided))
 
 
 def divide_by_alpha(colours: Array, alpha: Array) -> Array:
@@ -355,108 +294,56 @@ def divide_by_alpha(colours: Array, alpha: Array) -> Array:
     return np.where(is_light, colours, colours / np.where(alpha == 0, 1, alpha))
 
 
-def draw_tags(random: Random, stated: Statements, depth: int) -> dict[int, Any]:
-    """Draw the tags of TIFF about colours."""
-    tags: dict[int, Any] = {}
-    text = []
-    space = Space()
-    has_primaries, has_transfer, has_white = random.random(3) < 0.4
-    if has_primaries:
-        gamut = choose(random, GAMUTS)
-        *primaries, x, y = numbers(gamut)
-        tags[319] = (5, primaries)
-        tags[318] = (5, [x, y])
-        space = replace(space, gamut=gamut)
-        text.append(f"primaries {gamut}")
-    if has_transfer:
-        count = 1 << depth
-        table = np.rint(65535 * np.linspace(0, 1, count) ** 1.8).astype(int).tolist()
-        tags[301] = (3, table * choose(random, (1, 3)))
-        space = replace(space, curve=power(1.8))
-        text.append("transfer 1.8")
-    if has_white and not has_primaries:
-        tags[318] = (5, [0.3457, 0.3585])
-        stated.add(" ".join([*text, "white alone"]), None)
-    elif text:
-        stated.add(" ".join(text), space)
-    return tags
-
-
-EXIF_TAGS = {
-    "sRGB": ({0xA001: (3, [1])}, None, Space()),
-    "uncalibrated": ({0xA001: (3, [65535])}, None, None),
-    "R03": ({0xA001: (3, [65535])}, {1: (2, b"R03\0")}, Space(ADOBE, power(563 / 256))),
-    "2": ({0xA001: (3, [2])}, None, Space(ADOBE, power(563 / 256))),
-}
-
-
-def draw_exif(random: Random, stated: Statements, chance: float) -> tuple[Any, Any]:
-    """Draw the EXIF tags ColorSpace and interoperability index, by a chance."""
-    if random.random() >= chance:
-        return None, None
-    name = choose(random, list(EXIF_TAGS))
-    exif, index, space = EXIF_TAGS[name]
-    stated.add(f"EXIF {name}", space, first=name in ("R03", "2"))
-    return exif, index
-
-
-def draw_icc(random: Random, stated: Statements, chance: float) -> bytes | None:
-    """Draw an ICC profile, by a chance."""
-    if random.random() >= chance:
-        return None
-    name = choose(random, ("P3", "Adobe"))
-    profile, space = PROFILES[name]
-    stated.add(f"ICC {name}", space, first=True)
-    return profile
+def draw_tags(
+    random: Random, depth: int
+) -> tuple[Statements, dict[str, Any], bytes | None]:
+    """Draw the tags of TIFF and EXIF about colours, and an ICC profile or none."""
+    exif = choose(random, ([STRONG_EXIF, tags(depth)], [tags(depth), WEAK_EXIF]))
+    stated = Statements(random, PROFILES, *exif)
+    found: dict[str, Any] = {"tags": {}, "order": choose(random, "<>")}
+    profile = None
+    for stored in stated.stored:
+        if isinstance(stored, bytes):
+            profile = stored
+        elif "exif" in stored:
+            found |= stored
+        else:
+            found["tags"] = dict(stored)
+    return stated, found, profile
 
 
 def draw_tiff(random: Random, folder: Path) -> Drawn:
     """Draw a TIFF file."""
     dtype = choose(random, ("uint8", "uint16", "float32"))
     channels = choose(random, (1, 3, 3, 4))
-    is_float = dtype == "float32"
-    if is_float:
-        codes = random.random((1, WIDTH, channels)).astype(dtype)
-    else:
-        codes = draw_codes(random, channels, dtype)
-    stated = Statements()
-    tags = draw_tags(random, stated, depth=16 if dtype == "uint16" else 8)
+    depth = 16 if dtype == "uint16" else 8
+    stated, found, profile = draw_tags(random, depth)
+    space = stated.first_usable()
+    codes, shares = draw_codes(random, f"uint{depth}", channels)
+    light = space.to_srgb(shares)
+    if dtype == "float32":
+        codes = (codes / 255).astype(dtype)
+        light = space.linear_to_srgb(shares)
+    if profile:
+        found["tags"][34675] = (7, profile)
     if channels == 4:
-        tags[338] = (3, [2])  # straight alpha
-    exif, index = draw_exif(random, stated, 0.4)
-    if profile := draw_icc(random, stated, 0.2):
-        tags[34675] = (7, profile)
-    order = choose(random, "<>")
+        found["tags"][338] = (3, [2])  # straight alpha
     path = folder / "a.tif"
-    path.write_bytes(files.tiff_bytes(codes, tags, order, exif, index))
-    space, assumed = stated.first_usable()
-    rgb = first_three(codes)
-    if is_float:
-        light = space.linear_to_srgb(rgb.astype(float))
-    else:
-        light = space.to_srgb(rgb / np.iinfo(dtype).max)
-    text = f"{dtype} {channels} {order}{stated.text}"
-    return Drawn(path, text, light, light, assumed)
+    path.write_bytes(files.tiff_bytes(codes, **found))
+    return Drawn(path, stated, light, light)
 
 
 def draw_jpeg(random: Random, folder: Path) -> Drawn:
     """Draw a JPEG file of one colour."""
     path = folder / "a.jpg"
     pixel = random.integers(0, 256, 3, dtype=np.uint8)
-    stated = Statements()
-    tags = draw_tags(random, stated, depth=8)
-    exif, index = draw_exif(random, stated, 0.6)
-    order = choose(random, "<>")
-    Image.fromarray(np.tile(pixel, (8, 8, 1))).save(
-        path,
-        quality=100,
-        subsampling=0,
-        exif=b"Exif\0\0" + files.tiff_bytes(None, tags, order, exif, index),
-        icc_profile=draw_icc(random, stated, 0.3),
-    )
-    space, assumed = stated.first_usable()
-    light = space.to_srgb(np.asarray(Image.open(path)).reshape(-1, 3) / 255)
-    return Drawn(path, stated.text, light, light, assumed)
+    stated, found, profile = draw_tags(random, depth=8)
+    exif = b"Exif\0\0" + files.tiff_bytes(None, **found)
+    image = Image.fromarray(np.tile(pixel, (8, 8, 1)))
+    image.save(path, quality=100, subsampling=0, exif=exif, icc_profile=profile)
+    shares = np.asarray(Image.open(path)).reshape(-1, 3) / 255
+    light = stated.first_usable().to_srgb(shares)
+    return Drawn(path, stated, light, light)
 
 
 def draw_hdr(random: Random, folder: Path) -> Drawn:
@@ -466,14 +353,11 @@ def draw_hdr(random: Random, folder: Path) -> Drawn:
     mantissas[..., 0] |= 128
     mantissas[0, 0] = 255, 3, 4  # not the start of a run
     exponent = int(random.integers(124, 132))
-    gamut = "sRGB"
-    header = ""
-    if random.random() < 0.7:
-        gamut = choose(random, GAMUTS)
-        header = f"PRIMARIES= {' '.join(map(str, numbers(gamut)))}\n"
+    space = Space(choose(random, GAMUTS))
+    header = f"PRIMARIES= {' '.join(map(str, space.numbers))}\n"
     path.write_bytes(files.hdr_bytes(mantissas, exponent, header))
-    light = Space(gamut).linear_to_srgb(mantissas[0] / 256 * 2.0 ** (exponent - 128))
-    return Drawn(path, header.strip(), light, light)
+    light = space.linear_to_srgb(mantissas[0] / 256 * 2.0 ** (exponent - 128))
+    return Drawn(path, Statements(random), light, light)
 
 
 DRAW = (
@@ -488,19 +372,15 @@ DRAW = (
 )
 
 
-def largest_error(obtained: Array, expected: Array, colours: Array) -> float:
-    """Return the largest difference, relative to the largest component of the
-    ``colours`` if they are above 1.
-    """
-    scale = np.maximum(1, np.abs(colours).max(axis=1, keepdims=True))
-    return float((np.abs(obtained - expected) / scale).max())
+def draw_image(random: Random, folder: Path) -> Drawn:
+    """Draw an image of any format into a folder."""
+    return choose(random, DRAW)(random, folder)
 
 
 def wrong(seed: int) -> list[str]:
     """Return what is wrong with the colours of the image of a seed."""
-    random = np.random.default_rng(seed)
     with tempfile.TemporaryDirectory() as folder:
-        drawn = choose(random, DRAW)(random, Path(folder))
+        drawn = draw_image(np.random.default_rng(seed), Path(folder))
         with open_image(drawn.path) as image:
             pixels, channels = coloured_parts(image)[0]
             rows = image.rows(pixels, 0, pixels.window.height)
@@ -510,16 +390,19 @@ def wrong(seed: int) -> list[str]:
             decode = SURFACES.decoder(pixels)
             straight, _ = decode(channels.straight(values))
             codes = {warning.code for warning in SURFACES.warnings(image)}
-    error = largest_error(light, drawn.light, drawn.light)
-    clipped = largest_error(straight, np.clip(drawn.straight, 0, 1), drawn.straight)
     findings = []
-    if not error <= drawn.tolerance:
-        findings.append(f"light differs by {error:.3g}")
-    if not clipped <= drawn.tolerance:
-        findings.append(f"colours differ by {clipped:.3g}")
-    if (codes == {"colour-space-assumed"}) != drawn.assumed:
-        findings.append(f"warnings {codes}, expected {drawn.assumed}")
-    where = f"seed {seed}: {drawn.path.name} {drawn.text}"
+    for name, obtained, colours in (
+        ("light", light, drawn.light),
+        ("colours", straight, drawn.straight),
+    ):
+        expected = colours if name == "light" else np.clip(colours, 0, 1)
+        scale = np.maximum(1, np.abs(colours).max(axis=1, keepdims=True))
+        error = np.abs((obtained - expected) / scale).max()
+        if not error <= TOLERANCE:
+            findings.append(f"{name} differ by {error:.3g}")
+    if (codes == {"colour-space-assumed"}) != drawn.stated.assumed:
+        findings.append(f"warnings {codes}")
+    where = f"seed {seed}: {drawn.path.name} {drawn.stated.spaces}"
     return [f"{where}: {finding}" for finding in findings]
 
 

@@ -8,14 +8,15 @@ import sys
 import tempfile
 import warnings
 from collections import Counter
-from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from collections.abc import Iterator, Mapping, Sequence
+from functools import partial
 from itertools import chain
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 
-from uplift.atlas.atlas import Atlas
 from uplift.atlas.sources import read_atlas
 from uplift.common.errors import AtlasError, UpliftWarning
 
@@ -34,23 +35,6 @@ UNITS = {
 VALUES = {"light": (0.1, 0.9), "dark": (0.002, 0.015), "bright": (0.7, 0.95)}
 """Ranges of reflectances."""
 MARKS = ("", "NaN", "-9999", "-1.23e34", "n/a", "--")
-
-
-@dataclass(frozen=True)
-class Writing:
-    """How a table is written."""
-
-    layout: str = "columns"
-    unit: str = "nm"
-    values: str = "light"
-    scale: str = "fraction"
-    order: str = "ascending"
-    separator: str = ","
-    decimal: str = "."
-    mark: str = "none"
-    preamble: str = "none"
-    head: str = "names"
-    ending: str = "plain"
 
 
 CHOICES = {
@@ -72,8 +56,20 @@ CHOICES = {
         "plain", "blank lines", "trailing separators", "footer", "crlf", "utf-16",
     ),
 }  # fmt: skip
+"""Properties of a table; the first of each is the usual one."""
 
 
+REMARKS = {
+    "percent in comment": "# reflectance in percent",
+    "stated fraction": "# reflectance, values 0-1",
+    "percent in key": "Y Units: Reflectance (percentage)",
+}
+"""Lines that state the scale."""
+PREAMBLES = {
+    "keys": "Instrument: S-1\nIntegration time: 120 ms\nDate: 2020-01-02\n\n",
+    "program": "Data from paint Node\nUser: u\n>>>>>Begin Spectral Data<<<<<",
+    "numbers": "Range{0}350{0}900\nSlit{0}2",
+}
 IMPOSSIBLE = (
     {"decimal": [","], "separator": [","]},
     {"separator": [" "], "mark": [""]},  # a gap
@@ -88,30 +84,31 @@ IMPOSSIBLE = (
 """Choices that no program combines, or that the reader cannot know."""
 
 
-def combines(writing: Writing, choices: dict[str, list[str]]) -> bool:
-    """Whether a table is written with all of these choices."""
+def is_possible(writing: SimpleNamespace) -> bool:
+    """Whether programs write such tables, and the reader can know it."""
+    return not any(map(partial(has_choices, writing), IMPOSSIBLE))
+
+
+def has_choices(writing: SimpleNamespace, choices: Mapping[str, Any]) -> bool:
+    """Whether all of the named properties are among some options."""
     return all(getattr(writing, name) in options for name, options in choices.items())
 
 
-def is_possible(writing: Writing) -> bool:
-    """Whether programs write such tables, and the reader can know it."""
-    return not any(combines(writing, choices) for choices in IMPOSSIBLE)
-
-
-def draw(generator: np.random.Generator) -> Writing:
+def draw(generator: np.random.Generator) -> SimpleNamespace:
     """Draw a writing; half of its properties are the usual ones."""
     while True:
-        changes = {
-            name: str(generator.choice(options))
-            for name, options in CHOICES.items()
-            if generator.random() < 0.5
-        }
-        writing = replace(Writing(), **changes)
+        writing = SimpleNamespace()
+        for name, options in CHOICES.items():
+            usual = generator.random() < 0.5
+            value = options[0] if usual else str(generator.choice(options))
+            setattr(writing, name, value)
         if is_possible(writing):
             return writing
 
 
-def spectra(writing: Writing, generator: np.random.Generator) -> dict[str, np.ndarray]:
+def spectra(
+    writing: SimpleNamespace, generator: np.random.Generator
+) -> dict[str, np.ndarray]:
     """Return smooth reflectances by name, with four decimals in percent."""
     low, high = VALUES[writing.values]
     count = 1 if writing.head == "none" else 3
@@ -120,35 +117,30 @@ def spectra(writing: Writing, generator: np.random.Generator) -> dict[str, np.nd
         centre = generator.uniform(450, 650)
         width = generator.uniform(30, 90)
         shape = 1 / (1 + np.exp((centre - NM) / width))
-        label = name.replace(" ", "_") if writing.separator == " " else name
-        reflectances[label] = np.round(low + (high - low) * shape, 6)
+        reflectances[_word(name, writing)] = np.round(low + (high - low) * shape, 6)
     return reflectances
 
 
 def write(
-    writing: Writing,
+    writing: SimpleNamespace,
     reflectances: dict[str, np.ndarray],
     generator: np.random.Generator,
 ) -> bytes:
     """Return the bytes of a table."""
-    order = np.arange(len(NM))
-    if writing.order == "descending":
-        order = order[::-1]
-    elif writing.order == "shuffled":
-        order = generator.permutation(order)
-    nm = NM[order]
+    order = {
+        "ascending": np.arange(len(NM)),
+        "descending": np.arange(len(NM))[::-1],
+        "shuffled": generator.permutation(len(NM)),
+    }[writing.order]
     columns = {
-        name: _cells(values[order], nm, writing)
+        name: _cells(values[order], NM[order], writing)
         for name, values in reflectances.items()
     }
-    label = UNITS[writing.unit][1]
-    suffix = " (%R)" if writing.scale == "percent in label" else ""
-    if writing.separator == " ":
-        label = label.replace(" ", "")
-        suffix = suffix.strip()
-    table = _table(writing, label, _waves(nm, writing), columns, suffix)
     end = writing.separator * 3 if writing.ending == "trailing separators" else ""
-    lines = [*_preamble(writing), *(writing.separator.join(row) + end for row in table)]
+    lines = REMARKS.get(writing.scale, "").splitlines()
+    lines += PREAMBLES.get(writing.preamble, "").format(writing.separator).splitlines()
+    table = _table(writing, _waves(NM[order], writing), columns)
+    lines += [writing.separator.join(row) + end for row in table]
     if writing.ending == "footer":
         lines += ["", "End of data", "Checked by: A. Person"]
     newline = {"blank lines": "\n\n", "crlf": "\r\n"}.get(writing.ending, "\n")
@@ -156,7 +148,7 @@ def write(
     return "".join(line + newline for line in lines).encode(encoding)
 
 
-def _waves(nm: np.ndarray, writing: Writing) -> list[str]:
+def _waves(nm: np.ndarray, writing: SimpleNamespace) -> list[str]:
     """Return wavelengths or wave numbers as texts."""
     factor = UNITS[writing.unit][0]
     if writing.unit == "metre":
@@ -165,89 +157,54 @@ def _waves(nm: np.ndarray, writing: Writing) -> list[str]:
     return [_number(value, writing) for value in values]
 
 
-def _preamble(writing: Writing) -> Iterator[str]:
-    if writing.scale == "percent in comment":
-        yield "# reflectance in percent"
-    if writing.scale == "stated fraction":
-        yield "# reflectance, values 0-1"
-    if writing.preamble == "keys":
-        yield from (
-            "Instrument: S-1",
-            "Integration time: 120 ms",
-            "Date: 2020-01-02",
-            "",
-        )
-    elif writing.preamble == "program":
-        yield from ("Data from paint Node", "User: u", "Averages: 3")
-    elif writing.preamble == "numbers":
-        yield from (
-            f"Range{writing.separator}350{writing.separator}900",
-            f"Slit{writing.separator}2",
-        )
-    if writing.scale == "percent in key":
-        yield "Y Units: Reflectance (percentage)"
-    if writing.preamble == "program":
-        yield ">>>>>Begin Spectral Data<<<<<"
-
-
-def _number(value: float, writing: Writing) -> str:
+def _number(value: float, writing: SimpleNamespace) -> str:
     text = f"{value:.6f}".rstrip("0").rstrip(".")
     return text.replace(".", writing.decimal)
 
 
-def _cells(values: np.ndarray, nm: np.ndarray, writing: Writing) -> list[str]:
-    factor = 1 if writing.scale in ("fraction", "stated fraction") else 100
-    unit = ""
-    if writing.scale == "percent in cells":
-        unit = "%" if writing.separator == " " else " %"
-    texts = [_number(value * factor, writing) + unit for value in values]
-    if writing.mark != "none":
-        is_marked = (nm < 370) | (nm > 840)
-        for row in np.flatnonzero(is_marked):
-            texts[row] = writing.mark
-    return texts
+def _cells(values: np.ndarray, nm: np.ndarray, writing: SimpleNamespace) -> list[str]:
+    factor = 1 if "fraction" in writing.scale else 100
+    unit = " %" if writing.scale == "percent in cells" else ""
+    texts = [
+        writing.mark
+        if writing.mark != "none" and not 370 <= wave <= 840
+        else _number(value * factor, writing) + unit
+        for wave, value in zip(nm, values, strict=True)
+    ]
+    return [_word(text, writing) for text in texts]
+
+
+def _word(text: str, writing: SimpleNamespace) -> str:
+    """Return a text without blanks if these separate."""
+    return text.replace(" ", "") if writing.separator == " " else text
 
 
 def _table(
-    writing: Writing,
-    label: str,
-    waves: list[str],
-    columns: dict[str, list[str]],
-    suffix: str,
-) -> Iterator[list[str]]:
-    if writing.layout == "rows":
-        unit = {"um": "um", "angstrom": "Å"}.get(writing.unit, "")
-        yield [f"name{suffix}", *(f"{wave}{unit}" for wave in waves)]
-        for name, cells in columns.items():
-            yield [name, *cells]
-        return
-    if writing.layout == "samples":
-        yield ["Sample", label, f"Reflectance{suffix}"]
-        for name, cells in columns.items():
-            yield from ([name, *pair] for pair in zip(waves, cells, strict=True))
-        return
-    yield from _table_of_columns(writing, label, waves, columns, suffix)
-
-
-def _table_of_columns(
-    writing: Writing,
-    label: str,
-    waves: list[str],
-    columns: dict[str, list[str]],
-    suffix: str,
-) -> Iterator[list[str]]:
+    writing: SimpleNamespace, waves: list[str], columns: dict[str, list[str]]
+) -> Iterator[Sequence[str]]:
+    suffix = _word(" (%R)" * (writing.scale == "percent in label"), writing)
+    label = _word(UNITS[writing.unit][1], writing)
     heads = [f"{name}{suffix}" for name in columns]
     rows = list(zip(waves, *columns.values(), strict=True))
-    if writing.layout == "pairs":
-        for first, *others in [(label, *heads), *rows]:
-            yield list(chain.from_iterable((first, other) for other in others))
-        return
-    if writing.head == "two rows":
-        yield ["Sample", *columns]
-        heads = [f"R{suffix}"] * len(columns)
-    if writing.head != "none":
-        yield [label, *heads]
-    yield from map(list, rows)
+    match writing.layout:
+        case "rows":
+            unit = {"um": "um", "angstrom": "Å"}.get(writing.unit, "")
+            yield [f"name{suffix}", *(f"{wave}{unit}" for wave in waves)]
+            yield from ([name, *cells] for name, cells in columns.items())
+        case "samples":
+            yield ["Sample", label, f"Reflectance{suffix}"]
+            for name, cells in columns.items():
+                yield from ([name, *pair] for pair in zip(waves, cells, strict=True))
+        case "pairs":
+            for first, *others in [(label, *heads), *rows]:
+                yield list(chain.from_iterable((first, other) for other in others))
+        case _:
+            if writing.head == "two rows":
+                yield ["Sample", *columns]
+                heads = [f"R{suffix}"] * len(columns)
+            if writing.head != "none":
+                yield [label, *heads]
+            yield from rows
 
 
 def check(seed: int, folder: Path) -> str:
@@ -265,24 +222,15 @@ def check(seed: int, folder: Path) -> str:
             atlas = read_atlas(path)
         except AtlasError as error:
             return error.code
-    assert is_same(atlas, writing, reflectances), f"{seed}: {writing}: {atlas.entries}"
-    return "read"
-
-
-def is_same(
-    atlas: Atlas, writing: Writing, reflectances: dict[str, np.ndarray]
-) -> bool:
-    """Whether an atlas has the spectra that were written, up to their rounding."""
-    if len(atlas) != len(reflectances):
-        return False
+    assert len(atlas) == len(reflectances), f"{seed}: {writing}"
     for entry, (name, values) in zip(atlas, reflectances.items(), strict=True):
         expected = np.interp(entry.wavelengths, NM, values)
         covers = entry.wavelengths[0] <= 380 and entry.wavelengths[-1] >= 780
         is_named = writing.head == "none" or entry.name.startswith(name)
         error = np.abs(entry.values - expected).max()
-        if not (covers and is_named and error < ROUNDING):
-            return False
-    return True
+        is_same = covers and is_named and error < ROUNDING
+        assert is_same, f"{seed}: {writing}: {entry}"
+    return "read"
 
 
 if __name__ == "__main__":

@@ -10,7 +10,7 @@ from tests.fuzz.readers import READERS
 
 LARGE_COLOUR = b"1e308,0.5,0.2\n"
 FINDS = {
-    "atlas table": (
+    "atlas of an instrument": (
         b"name,400,1e308\ngrey,0.5,0.5\n",
         b"name,inf,inf\ngrey,1e308,1e308\n",
         b"\xef\xbb\xbf",
@@ -61,7 +61,7 @@ def test_inputs_that_once_failed_are_rejected(tmp_path, name):
         assert list(tally) == ["accepted" if content == LARGE_COLOUR else "rejected"]
 
 
-@pytest.mark.parametrize("seed", range(30))
+@pytest.mark.parametrize("seed", range(10))
 def test_odd_builds_keep_the_laws(seed):
     """`make nightly` runs thousands, of more kinds."""
     assert not broken(seed, QUICK)

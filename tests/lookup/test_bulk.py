@@ -6,23 +6,18 @@ from numpy.testing import assert_allclose
 
 from tests.cube.hand_made import hand_made
 from tests.helpers import raises
-from uplift.common.errors import ColourError, OptionError
+from uplift.common.errors import OptionError
 from uplift.lattice.lattice import Lattice
 from uplift.lookup import bulk
 from uplift.lookup.cube import Cube
 
 AT = np.linspace(380, 780, 9)
-CUBES = ["macbeth_cube", "small_cube", "plain_cube", "small_sigmoid_cube"]
+CUBES = ["small_cube", "plain_cube", "small_sigmoid_cube"]
 
 
 @pytest.fixture(params=CUBES)
 def cube(request):
     return request.getfixturevalue(request.param)
-
-
-@pytest.fixture(scope="module")
-def sample(small_cube):
-    return bulk.spectra(small_cube, AT)
 
 
 def colours(data, count=3000):
@@ -86,17 +81,6 @@ def test_results_do_not_depend_on_chunks_and_threads(small_cube, monkeypatch):
     for threads in (1, 2, 5):
         again = bulk.spectra(small_cube, AT, threads=threads)(rgb)
         assert_allclose(again, whole, rtol=0, atol=1e-6)
-
-
-@pytest.mark.parametrize(
-    "rgb", [(np.nan, 0, 0), (0, 1.001, 0), 0.5, (0.5, 0.5), "red", None, []]
-)
-def test_invalid_colours_are_refused(sample, small_cube, rgb):
-    with pytest.raises(ColourError) as caught:
-        sample(rgb)
-    with pytest.raises(ColourError) as expected:
-        small_cube.reflectance(rgb)
-    assert str(caught.value) == str(expected.value)
 
 
 def test_invalid_wavelengths_counts_and_threads_are_refused(small_cube):

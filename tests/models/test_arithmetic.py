@@ -16,7 +16,7 @@ from uplift.models.arithmetic import (
     blocked_matmul_columns,
 )
 
-SIZES = np.concatenate([[0], np.logspace(-300, 300, 4001), np.linspace(0.5, 2, 4001)])
+SIZES = np.concatenate([[0], np.logspace(-300, 300, 801), np.linspace(0.5, 2, 801)])
 
 
 @pytest.mark.parametrize(("dtype", "within"), [(np.float64, 6e-16), (np.float32, 4e-7)])
@@ -39,34 +39,16 @@ def test_difference_of_arc_tangents(change):
         assert_allclose(found, np.arctan(moved) - np.arctan(x), rtol=1e-9, atol=4e-16)
 
 
-def test_columns_are_independent():
-    x = np.zeros((2, 3))
-    change = np.array([[1e-3, 1e-3, 9.0], [1e-3, np.nan, 1e-3]])
-    found = arctan_difference(x, change)
-    assert_allclose(found, np.arctan(change), rtol=1e-9)
-
-
 @pytest.mark.parametrize(
     ("count", "shape"),
-    [
-        (0, (9, 16)),
-        (1, (81, 3)),
-        (10_001, (9, 81)),
-        (5_000, (17, 400)),
-        (3, (2, SINGLE_THREAD_SIZE)),
-    ],
+    [(0, (9, 16)), (10_001, (9, 81)), (3, (2, SINGLE_THREAD_SIZE))],
 )
 def test_slices_do_not_change_the_product(count, shape):
     rng = np.random.default_rng(count)
     rows = rng.normal(size=(count, shape[0]))
     matrix = rng.normal(size=shape)
+    expected = rows @ matrix
     for one, other in ((rows, matrix), (rows.copy("F"), matrix.copy("F"))):
-        assert_allclose(
-            blocked_matmul(one, other), rows @ matrix, rtol=1e-12, atol=1e-12
-        )
-        assert_allclose(
-            blocked_matmul_columns(other.T, one.T),
-            (rows @ matrix).T,
-            rtol=1e-12,
-            atol=1e-12,
-        )
+        columns = blocked_matmul_columns(other.T, one.T)
+        for found in (blocked_matmul(one, other), columns.T):
+            assert_allclose(found, expected, rtol=1e-12, atol=1e-12)

@@ -6,12 +6,11 @@ from numpy.testing import assert_allclose
 
 import uplift
 from tests.cube.cube_files import forge
-from tests.helpers import query, query_xyz, raises
+from tests.helpers import raises
 from uplift.colorimetry import observer
 from uplift.colorimetry.camera import CAMERA
-from uplift.common.errors import ColourError, CubeFileError
+from uplift.common.errors import CubeFileError
 from uplift.cube.file import digest
-from uplift.extras.export.coeff import write_coeff
 from uplift.extras.report.rebuild import rebuild
 
 NIKON = "Nikon 5100 (NPL)"
@@ -42,47 +41,24 @@ def test_a_stored_cube_is_read_and_rebuilt_without_its_file(cube, table, tmp_pat
     path = tmp_path / "camera.uplift"
     cube.save(path)
     stored = uplift.load(path)
-    assert (stored.space, stored.observer, stored.illuminant) == (
-        "lens",
-        observer.DEFAULT_OBSERVER,
-        "A",
-    )
+    assert (stored.space, stored.observer) == ("lens", observer.DEFAULT_OBSERVER)
     options = stored.data.provenance["options"]
     assert (options["space"], options["observer"]) == (CAMERA, "lens")
-    assert stored.data.sensor.matrix.tobytes() == cube.data.sensor.matrix.tobytes()
     assert digest(stored.data) == digest(cube.data)
     assert digest(rebuild(stored, path).data) == digest(cube.data)
+    raw = stored.data.sensor.rgb(stored.reflectance(GREYS))
+    assert_allclose(raw, GREYS, atol=1e-4)
 
 
 @pytest.mark.parametrize(
-    ("name", "change"),
-    [
-        ("sensitivities", lambda channels: channels[:, [0, 0, 2]]),
-        ("sensitivities", lambda channels: channels * [1, 0, 1]),
-        ("cmfs", lambda channels: channels[:, [1, 1, 1]]),
-        ("cmfs", lambda channels: channels * 0),
-    ],
+    ("name", "factors"),
+    [("sensitivities", [1, 0, 1]), ("cmfs", [1, 0, 1]), ("cmfs", [0, 0, 0])],
 )
 def test_forged_channels_that_depend_on_each_other_are_refused(
-    cube, tmp_path, name, change
+    cube, tmp_path, name, factors
 ):
     def forged(tensors, metadata):
-        tensors[f"sensor.{name}"] = change(tensors[f"sensor.{name}"])
+        tensors[f"sensor.{name}"] = factors * tensors[f"sensor.{name}"]
 
     with raises(CubeFileError, "cube-file"):
         uplift.load(forge(cube.data, tmp_path / "forged.uplift", forged))
-
-
-def test_answers_have_the_raw_values_and_xyz_of_the_spectrum(cube):
-    sensor = cube.data.sensor
-    for result, raw in zip(query(cube, GREYS, mode="refined"), GREYS, strict=True):
-        assert_allclose(sensor.rgb(result.reflectance), raw, atol=1e-4)
-        assert_allclose(result.xyz, sensor.light.xyz @ result.reflectance, rtol=1e-12)
-
-
-def test_xyz_are_not_taken_for_raw_values(cube, tmp_path):
-    with raises(ColourError, "camera-without-xyz"):
-        list(query_xyz(cube, [[0.2, 0.2, 0.2]]))
-    with raises(ColourError, "camera-without-xyz"):
-        write_coeff(cube.data, tmp_path / "table.coeff", res=2)
-    assert list(tmp_path.iterdir()) == []

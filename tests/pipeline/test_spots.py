@@ -6,7 +6,6 @@ from numpy.testing import assert_allclose
 
 import uplift
 from benchmarks.materials import MIXTURE, SHIPPED, materials
-from tests.conftest import MACBETH
 from tests.helpers import quiet_build, warns
 from uplift.colorimetry import observer
 from uplift.colorimetry.delta_e import delta_e_spectra
@@ -75,13 +74,6 @@ def test_entries_that_contradict_their_surroundings_are_named(mixed):
     answers = mixed.reflectance(table.rgb)
     measured = delta_e_spectra(light, answers, table.measured)
     assert_allclose(table.error, measured, atol=1e-3)
-
-
-def test_entries_that_agree_are_exact(macbeth_cube):
-    assert macbeth_cube.data.provenance["smoothed"] == {}
-    exact = quiet_build(MACBETH, dim=32, debug=True, exact_entries=True)
-    rgb = macbeth_cube.data.atlas.rgb
-    assert_allclose(macbeth_cube.reflectance(rgb), exact.reflectance(rgb), atol=1e-12)
 
 
 def test_sparse_cubes_answer_as_whole_ones(mixed):

@@ -71,8 +71,8 @@ def map_batches(function: Callable[..., Any], constants: Any, *arrays: Any) -> A
 
 
 def _devices() -> tuple[jax.Device, ...]:
-    """The CPUs, also beside an accelerator, on which builds are no faster; the devices
-    that ``JAX_PLATFORMS`` names, if any.
+    """The CPUs: accelerators make builds no shorter. The devices that
+    ``JAX_PLATFORMS`` names, if any.
     """
     is_named = bool(jax.config.values["jax_platforms"])
     return tuple(jax.devices() if is_named else jax.devices("cpu"))

@@ -2,15 +2,13 @@
 its digest is valid.
 """
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 from numpy.testing import assert_array_equal
 
 import uplift
 from tests.helpers import raises
-from uplift.common.errors import CubeFileError, OutputError
+from uplift.common.errors import CubeFileError
 from uplift.cube import container
 from uplift.extras.emission import file as table
 from uplift.extras.emission.file import emission_digest, read_emission, write_emission
@@ -19,17 +17,6 @@ from uplift.extras.emission.file import emission_digest, read_emission, write_em
 @pytest.fixture(scope="module")
 def data():
     return uplift.load_emission().data
-
-
-def forge(data, path, change):
-    """Write ``data`` after ``change(tensors, metadata)``, with the digest of the
-    changed content.
-    """
-    tensors = table._tensors(data)
-    metadata = table._metadata(data)
-    change(tensors, metadata)
-    container.save((tensors, metadata), path, table.KIND, lambda _: None, force=True)
-    return path
 
 
 def test_round_trip_is_exact(tmp_path, data):
@@ -42,37 +29,23 @@ def test_round_trip_is_exact(tmp_path, data):
     assert (tmp_path / "a.uplift").read_bytes() == (tmp_path / "b.uplift").read_bytes()
 
 
-def spoil(name, value):
-    """A change that replaces one element of an array."""
-
-    def change(tensors, metadata):
-        tensors[name] = tensors[name].copy()
-        tensors[name].flat[-1] = value
-
-    return change
-
-
 @pytest.mark.parametrize(
-    ("code", "change"),
+    ("name", "value"),
     [
-        ("cube-file", spoil("spectra", np.nan)),
-        ("cube-file", spoil("entries.uv", 0.9)),
-        ("cube-file", spoil("entries.radius", 0.05)),
-        ("cube-file", lambda tensors, _: tensors.update(rgb_to_xyz=np.ones((3, 3)))),
-        ("cube-file", spoil("rings", 0.5)),
-        ("cube-file", lambda tensors, _: tensors.pop("error")),
-        ("cube-file", lambda _, metadata: metadata.update(entries=["A"] * 5)),
-        ("cube-version", lambda _, metadata: metadata.update(version=2)),
-        ("cube-feature", lambda _, metadata: metadata.update(features=["polarised"])),
+        ("spectra", np.nan),
+        ("entries.uv", 0.9),
+        ("entries.radius", 0.05),
+        ("rgb_to_xyz", 0.0),
+        ("rings", 0.5),
     ],
 )
-def test_invalid_content_is_refused(tmp_path, data, code, change):
-    with raises(CubeFileError, code):
-        read_emission(forge(data, tmp_path / "forged.uplift", change))
-
-
-def test_an_unreadable_table_is_not_written(tmp_path, data):
-    broken = replace(data, error=np.full_like(data.error, np.nan))
-    with raises(OutputError, "output"):
-        write_emission(broken, tmp_path / "table.uplift")
-    assert not list(tmp_path.iterdir())
+def test_invalid_content_is_refused(tmp_path, data, name, value):
+    """Though its digest is that of the changed content."""
+    tensors = table._tensors(data)
+    tensors[name] = tensors[name].copy()
+    tensors[name][-1] = value
+    path = tmp_path / "forged.uplift"
+    content = (tensors, table._metadata(data))
+    container.save(content, path, table.KIND, lambda _: None, force=True)
+    with raises(CubeFileError, "cube-file"):
+        read_emission(path)

@@ -15,7 +15,6 @@ from uplift.extras.files.spec import (
     SPEC,
     FolderPath,
     Matrix,
-    NotNegative,
     Number,
     Row,
     SpecFolder,
@@ -42,7 +41,6 @@ class Table(SpecModel):
     """A table of all kinds of values."""
 
     max_value: Number = 1.0
-    weight: NotNegative = 1.0
     lamps: tuple[Lamp, ...] = ()
     file: FolderPath | None = None
 
@@ -86,24 +84,17 @@ LAMP = "[[lamps]]\nto-xyz = [[1, 2]]\nnumbers = [1]"
         ("max_value = 3", "max_value: unknown key"),
         ("max-value = 7", "max-value must be negative, got 7"),
         ("max-value = '3'", "max-value must be"),
-        ("max-value = true", "max-value must be"),
-        ("max-value = inf", "max-value must be"),
-        ("weight = -1", "weight must be"),
         ("lamps = [3]", "lamps[0] must be a table, got 3"),
-        ("lamps = 3", "lamps must be"),
         ("[[lamps]]\nnumbers = [1]", "lamps[0].to-xyz: required key is missing"),
-        (f"{LAMP}\nto_xyz = 1", "lamps[0].to_xyz: unknown key"),
         (LAMP.replace("[1]", "[nan]"), "lamps[0].numbers[0] must be"),
         (
             LAMP.replace("2]]", "2, 3]]"),
             "lamps[0].to-xyz must be 1 × 2 numbers, got 1 × 3",
         ),
-        (LAMP.replace("2]]", "2], [3]]"), "lamps[0].to-xyz must have rows"),
         ("file = '/etc/passwd'", "file must lie in the folder"),
-        (r"file = 'C:\a'", "file must lie in the folder"),
-        ("file = 'a/../../b'", "file must lie in the folder"),
+        (LAMP.replace("2]]", "2], [3]]"), "lamps[0].to-xyz must have rows"),
         (r'file = "a\u0000"', "file must be a path"),
-        ("file = 3", "file must be a path"),
+        ("file = 'a/../../b'", "file must lie in the folder"),
     ],
 )
 def test_errors_name_the_key_path(read, text, start):
@@ -118,7 +109,7 @@ def test_look_ups_keep_their_code_and_other_errors_get_the_hint(read):
         read(f"{LAMP}\nlight = 'D66'")
     assert caught.value.problem == "lamps[0].light: unknown illuminant 'D66'"
     assert "D65" in caught.value.hint
-    for text, hint in (("max-value = 7", "lower it"), ("weight = -1", "again")):
+    for text, hint in (("max-value = 7", "lower it"), ("max-value = '3'", "again")):
         with raises(PaletteError, "invalid-file") as caught:
             read(text, hint="again")
         assert caught.value.hint == hint
@@ -130,17 +121,7 @@ class Keys(SpecModel, extra="allow"):
     a: Any = None
 
 
-@pytest.mark.parametrize(
-    "text",
-    [
-        "{} = 1",
-        "[{}]",
-        "[[{}]]",
-        "a = { {} = 1 }",
-        "# {}\n{} = 1",
-        "a = '''{}'''\n{} = 1",
-    ],
-)
+@pytest.mark.parametrize("text", ["{} = 1", "[{}]", "[[{}]]", "a = { {} = 1 }"])
 @pytest.mark.parametrize("parts", [["a"], ['"a"', " b\t"]])
 def test_long_dotted_keys_are_refused_before_they_are_parsed(read, text, parts):
     tracemalloc.start()
@@ -156,33 +137,27 @@ def test_points_in_texts_are_no_keys(read, quote):
     assert read(f"a = {quote}{text}{quote} # {text}", Keys).a == text
 
 
+def nested(depth):
+    return b'{"a":' * depth + b"1" + b"}" * depth
+
+
 @pytest.mark.parametrize(
-    "data", [b"\x89PNG\r\n\x1a\n", b"v/1\x01", "é = 1".encode("latin-1"), bytes(9)]
+    ("kind", "data", "is_valid"),
+    [
+        ("TOML", b"\x89PNG\r\n\x1a\n", False),
+        ("TOML", "é = 1".encode("latin-1"), False),
+        ("TOML", "a = 1".encode("utf-8-sig"), True),
+        ("JSON", b"[]", False),
+        ("JSON", b'{"a": NaN}', False),
+        ("JSON", nested(20), True),
+        ("JSON", nested(40), False),
+    ],
 )
-def test_other_files_are_named(read, tmp_path, data):
-    path = tmp_path / "a.toml"
+def test_other_files_are_refused(tmp_path, kind, data, is_valid):
+    path = tmp_path / "a"
     path.write_bytes(data)
-    with raises(PaletteError, "invalid-file") as caught:
-        read_spec(path, Keys, PaletteError)
-    assert "codec" not in caught.value.problem
-    path.write_text("a = 1", encoding="utf-8-sig")
-    assert read_spec(path, Keys, PaletteError).a == 1
-
-
-@pytest.mark.parametrize("text", ["[]", "3", "{", '{"a": NaN}'])
-def test_json_must_be_an_object(tmp_path, text):
-    path = tmp_path / "a.json"
-    path.write_text(text)
-    with raises(PlanFileError, "invalid-file"):
-        read_spec(path, Keys, PlanFileError, kind="JSON")
-
-
-@pytest.mark.parametrize("depth", [20, 40])
-def test_nesting_is_limited(tmp_path, depth):
-    path = tmp_path / "a.json"
-    path.write_text('{"a":' * depth + "1" + "}" * depth)
-    if depth < 32:
-        assert read_spec(path, Keys, PlanFileError, kind="JSON").a
+    if is_valid:
+        assert read_spec(path, Keys, PlanFileError, kind=kind).a
     else:
         with raises(PlanFileError, "invalid-file"):
-            read_spec(path, Keys, PlanFileError, kind="JSON")
+            read_spec(path, Keys, PlanFileError, kind=kind)

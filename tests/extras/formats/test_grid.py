@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from tests.atlas.vendor_files import LAYOUTS, archive
 from tests.helpers import raises
 from uplift.atlas.sources import read_atlas
 from uplift.common.errors import AtlasError, UpliftWarning
@@ -41,11 +40,6 @@ def columns(label, cells):
 
 def rows(label, cells):
     return f"# {label}\nname;{';'.join(map(str, NM))}\na;{';'.join(cells)}"
-
-
-def spreadsheet(label, cells):
-    sheet = [["nm", label], *map(list, zip(map(int, NM), cells, strict=True))]
-    return archive(LAYOUTS.get_template("xlsx.xlsx").render(sheet=sheet))
 
 
 def cgats(label, cells):
@@ -102,7 +96,6 @@ MARKS = ("", "NaN", "-9999")
 FORMATS = {
     "columns": (columns, ".,", MARKS, LABELS),
     "rows": (rows, ".,", MARKS, LABELS),
-    "spreadsheet": (spreadsheet, ".,", MARKS, LABELS),
     "cgats": (cgats, ".,", ("-9999",), LABELS),
     "jcamp": (jcamp, ".,", (), LABELS),
     "tm27": (tm27, ".", ("-9999",), LABELS),
@@ -120,16 +113,13 @@ def write(folder, form, label, cells):
     return path
 
 
-def check(path, kind, values):
+def check(path, kind):
     """Compare what is read with the values, as the row of the table has it."""
-    results = [values, values / values.max()]
-    if "wavelength" in kind.lamp:
-        results[1] = values / NM / (values / NM).max()
-    cases = (
-        (read_atlas, kind.atlas, "not-reflectance"),
-        (read_lamps, kind.lamp, "not-a-lamp"),
-    )
-    for (read, treatment, code), result in zip(cases, results, strict=True):
+    power = VALUES / NM if "wavelength" in kind.lamp else VALUES
+    for read, treatment, code, expected in (
+        (read_atlas, kind.atlas, "not-reflectance", VALUES),
+        (read_lamps, kind.lamp, "not-a-lamp", power / power.max()),
+    ):
         if not treatment.startswith("read"):
             with raises(AtlasError, code):
                 read(path)
@@ -137,23 +127,30 @@ def check(path, kind, values):
         (entry,) = read(path)
         inside = np.isin(NM, entry.wavelengths)
         assert inside[1:].all()
-        assert_allclose(entry.values * results[1][-1], result[inside] * results[1][-1])
+        assert_allclose(entry.values, expected[inside])
+
+
+def writings(form):
+    """Decimal point, factor and mark of the first value, which may be missing."""
+    _, decimals, marks, _ = FORMATS[form]
+    yield from itertools.product(decimals, (1, 100), (None,))
+    yield from ((decimals[-1], 1, mark) for mark in marks)
 
 
 @pytest.mark.parametrize("form", FORMATS)
 def test_all_formats_read_by_one_table(form, tmp_path):
-    _, decimals, marks, labels = FORMATS[form]
-    for name, label in labels.items():
+    for name, label in FORMATS[form][3].items():
         kind = QUANTITIES[name]
         if not kind.words and form in IN_REMARKS:
             continue
-        writings = list(itertools.product(decimals, (1, 100), (None, *marks)))
         is_read = "read" in (kind.atlas + kind.lamp)
-        for decimal, factor, mark in writings if is_read else writings[:1]:
+        for decimal, factor, mark in itertools.islice(
+            writings(form), None if is_read else 1
+        ):
             cells = [f"{value * factor:.6g}".replace(".", decimal) for value in VALUES]
-            cells[:1] = [mark] if mark is not None else cells[:1]
+            cells[0] = cells[0] if mark is None else mark
             stated = label if factor == 1 or form == "cxf" else f"{label} in percent"
             path = write(tmp_path, form, stated, cells)
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore", UpliftWarning)
-                check(path, kind, VALUES)
+                check(path, kind)

@@ -23,15 +23,12 @@ def lines(pattern="{:g},{:g}", factor=1.0, nm=NM):
     )
 
 
-def row(name, factor=1.0, pattern="{:g}"):
-    return (
-        ",".join(
-            [name, *(pattern.format(round(value * factor, 6)) for value in VALUES)]
-        )
-        + "\n"
-    )
+def row(name, factor=1.0):
+    cells = [f"{round(value * factor, 6):g}" for value in VALUES]
+    return ",".join([name, *cells]) + "\n"
 
 
+NUMBERS = "nm," + ",".join(map(str, range(101, 801))) + "\n"
 HEADER = ",".join(["name", *map(str, NM)]) + "\n"
 
 
@@ -49,16 +46,10 @@ def test_generated_tables_are_read(tmp_path, seed):
 @pytest.mark.parametrize(
     "text",
     [
-        "# reflectance in percent\n" + HEADER + row("felt"),
-        "Paints (%R)\n" + HEADER + row("felt"),
         "Units: % Reflectance\n" + HEADER + row("felt"),
-        HEADER + row("felt (%R)"),
         "name," + ",".join(f"R% {at}" for at in NM) + "\n" + row("felt"),
         "nm,Reflect. %\n" + lines(),
-        "nm,felt [%]\n" + lines(),
-        "Y Units: Reflectance (percentage)\nnm,felt\n" + lines(),
         "nm,felt\n" + lines("{:g},{:g} %"),
-        "sample,wavelength,Reflectance (%)\n" + lines("felt,{:g},{:g}"),
     ],
 )
 def test_a_stated_percentage_wins_over_small_values(read, text):
@@ -76,17 +67,21 @@ def test_a_stated_percentage_wins_over_small_values(read, text):
         ("# values in percent\nnm,R (fraction)\n" + lines(), "scales-contradict"),
         (HEADER + row("a").replace("0.", "1."), "scale-not-stated"),
         (lines("{:g} {:g}", 8), "scale-not-stated"),  # a lamp, perhaps
+        (lines("{:g} {:.6f}", 1.3 / VALUES.max()), "scale-not-stated"),
+        (HEADER + row("a").replace("\n", "%\n"), "mixed-scales"),
+        (lines(nm=NM * 10), "atlas"),  # units that nothing states
+        (lines(nm=1e7 / NM), "atlas"),
+        (lines(nm=NM + 600), "atlas"),
+        (NUMBERS + lines("{:g},{:g}" + ",0.5" * 699), ""),  # may mean two things
+        (lines("{:g} {:g} 0.5"), ""),
+        ("nm,a\n" + lines("{:g},0,{:g}"), ""),
+        ("nm,a\n" + lines('{:g},"{:.3f}"', 15).replace(".", ","), ""),
+        ("nm,a\n" + lines("{:g},{:.0f}", 10000), ""),
     ],
 )
 def test_contradictions_and_doubts_are_refused(read, text, code):
-    with raises(AtlasError, code) as caught:
+    with raises(AtlasError, code):
         read(text)
-    assert "measured=" in caught.value.hint
-
-
-def test_percent_signs_in_some_cells_are_refused(read):
-    with raises(AtlasError, "mixed-scales"):
-        read(HEADER + row("a").replace("\n", "%\n"))
 
 
 @pytest.mark.parametrize(
@@ -98,43 +93,30 @@ def test_percent_signs_in_some_cells_are_refused(read):
         (1, '{:g},"{:.4f}"', 1),
         (100, "{:g};{:.3f}", 100),
         (15000, '{:g}\t"{:,.0f}"', None),
-        (15, '{:g},"{:.3f}"', None),
-        (10000, "{:g},{:.0f}", None),
     ],
 )
 def test_commas_of_thousands(read, factor, pattern, divisor):
     """Those of 8 % × 10,000 have no comma, those of 8 % × 18,200 reach that of a white;
     the others may be decimal.
     """
-    text = lines(pattern, factor)
-    if ".0f" not in pattern:
-        text = text.replace(".", ",")
+    table = lines(pattern, factor)
+    is_whole = ".0f" in pattern
+    if not is_whole:
+        table = table.replace(".", ",")
+    text = f"nm{pattern[4]}a\n{table}"
     if divisor is None:
         with raises(AtlasError):
-            read("nm,a\n".replace(",", pattern[4]) + text)
+            read(text)
         return
     with warns(*["values-in-percent"] * (divisor == 100)):
-        atlas = read("nm,a\n".replace(",", pattern[4]) + text)
-    digits = 0 if ".0f" in pattern else 4
-    check_values(atlas, np.round(VALUES * factor, digits) / divisor)
+        atlas = read(text)
+    expected = np.round(VALUES * factor, 0 if is_whole else 4) / divisor
+    check_values(atlas, expected)
 
 
-@pytest.mark.parametrize(("top", "code"), [(1.05, ""), (1.3, "x"), (9, "x"), (20, "")])
-def test_values_without_any_label_may_be_of_another_quantity(read, top, code):
-    text = lines("{:g} {:.6f}", top / VALUES.max())
-    with warns(*["values-in-percent"] * (top == 20)):
-        if code:
-            with raises(AtlasError, "scale-not-stated"):
-                read(text)
-        else:
-            check_values(read(text), VALUES / VALUES.max() * top / (100 ** (top == 20)))
-
-
-def test_names_with_percentages_are_names(read):
-    atlas = read(HEADER + row("grey 50%") + row("100 % black"))
-    assert atlas.names == ("grey 50%", "100 % black")
-    assert "assumed" in atlas.sources[0].notes[-1]
-    check_values(atlas)
+def test_values_without_any_label_may_be_a_little_above_one(read):
+    factor = 1.05 / VALUES.max()
+    check_values(read(lines("{:g} {:.6f}", factor)), VALUES * factor)
 
 
 LIGHTS = ("wavelength,A,D65\n" + lines("{0:g},{1:g},{1:g}"),)
@@ -157,34 +139,36 @@ def test_lights_are_no_reflectances(save, text):
     check_values(lamps, VALUES / VALUES.max())
 
 
-def test_columns_of_other_quantities_are_skipped_by_name(read):
-    text = "nm,ochre,Transmittance,Std Dev\n" + lines("{:g},{:g},0.5,0.001")
+@pytest.mark.parametrize(
+    ("text", "skipped"),
+    [
+        (
+            "nm,ochre,Transmittance,Std Dev\n" + lines("{:g},{:g},0.5,0.001"),
+            ["Transmittance", "Std Dev"],
+        ),
+        (
+            "Sample,ochre,ochre,red,red\nnm,Mean,SD,K,S\n"
+            + lines("{:g},{:g},0.01,0.2,0.3"),
+            ["SD", "red", "red"],
+        ),
+        (HEADER + row("ochre") + row("Std Dev", 0.01), ["Std Dev"]),
+    ],
+)
+def test_spectra_of_other_quantities_are_skipped_by_name(read, text, skipped):
     with warns("entry-skipped"):
         atlas = read(text)
     assert atlas.names == ("ochre",)
-    assert [entry.name for entry in atlas.skipped] == ["Transmittance", "Std Dev"]
-    two = "Sample,ochre,ochre,red,red\nnm,Mean,SD,K,S\n"
-    with warns("entry-skipped"):
-        heads = read(two + lines("{:g},{:g},0.01,0.2,0.3"))
-    assert heads.names == ("ochre",)
-    with warns("entry-skipped"):
-        rows = read(HEADER + row("ochre") + row("Std Dev", 0.01))
-    assert rows.names == ("ochre",)
+    assert [entry.name for entry in atlas.skipped] == skipped
 
 
 @pytest.mark.parametrize(
     "label",
     [
         "{}[nm]",
-        "{}nm",
-        "nm{}",
-        "λ{}",
         "R{}",
-        "R_{}",
         "SPECTRAL_NM{}",
         "Refl ({} nm)",
         "X{}.0",
-        "{}.0",
         "R% {}",
         "Spectral Data {}[nm]",
     ],
@@ -197,46 +181,9 @@ def test_labels_are_wavelengths_in_rows_and_columns(read, label):
     check_values(read("label,a\n" + lines("{},{:g}", factor, labels), "tall.csv"))
 
 
-@pytest.mark.parametrize(
-    ("head", "pattern", "numbers"),
-    [
-        ("X Units: Wavelength (micrometers)", "{:.4f},{:g}", NM / 1000),
-        ("Wavelength range: 0.35-2.5 µm\nnm,a", "{:g},{:g}", NM),
-        ("Wavelength accuracy: 0.1 nm\nwavelength,a", "{:.4f},{:g}", NM / 1000),
-    ],
-)
-def test_units_in_remarks_are_those_of_wavelengths(read, head, pattern, numbers):
-    check_values(read(f"{head}\n" + lines(pattern, nm=numbers)))
-
-
-@pytest.mark.parametrize(
-    "text", [lines(nm=NM * 10), lines(nm=1e7 / NM), lines(nm=NM + 600)]
-)
-def test_units_that_nothing_states_are_refused_by_their_numbers(read, text):
-    with raises(AtlasError, "atlas") as caught:
-        read(text)
-    assert "400–700 nm" in caught.value.problem
-
-
-@pytest.mark.parametrize(
-    "outside",
-    [
-        ["350 -0.2", "352 -0.37"], ["350 -9999", "360 -1.23e34"],
-        ["2400 0.4", "2401 -9999"],
-        ["973 0.7", "975 0.5", "975 0.6"], ["350 NaN", "900 n/a"],
-        ["820 --", "840 -999"],
-    ],
-)  # fmt: skip
-def test_faults_outside_the_used_range_are_cut_off(read, outside):
-    atlas = read(lines("{:g} {:g}") + "\n".join(outside) + "\n")
-    inside = (atlas[0].wavelengths >= 380) & (atlas[0].wavelengths <= 780)
-    assert_allclose(atlas[0].values[inside], VALUES)
-
-
 @pytest.mark.parametrize("mark", ["", "NaN", "n/a", "--", "-9999", "-1.23e34", "#N/A"])
 def test_missing_values_within_the_range(save, mark):
-    text = HEADER + row("a").replace(f",{VALUES[5]:g},", f",{mark},", 1) + row("b")
-    path = save(text)
+    path = save(HEADER + row("a").replace(f",{VALUES[5]:g},", f",{mark},") + row("b"))
     with raises(AtlasError, "missing-value") as caught:
         read_atlas(path)
     assert (caught.value.line, caught.value.entry) == (2, "a")
@@ -246,56 +193,41 @@ def test_missing_values_within_the_range(save, mark):
     assert any("interpolated" in note for note in filled.sources[0].notes)
     with warns("entry-skipped"):
         kept = read_atlas(path, missing="skip")
-    assert kept.names == ("b",)
-    assert kept.sources[0].missing == "skip"
+    assert (kept.names, kept.sources[0].missing) == (("b",), "skip")
     with raises(UnknownNameError, "unknown-name"):
         read_atlas(path, missing="zero")
 
 
-@pytest.mark.parametrize("value", [10.0, 0.1])
-def test_a_value_ten_times_its_neighbours_is_warned_of(read, value):
-    values = np.full(81, 0.3 if value < 1 else 0.08)
-    values[40] *= 1.1 * value if value > 1 else value / 1.1
-    text = "nm,a\n" + "".join(
-        f"{380 + 5 * at},{each:.4f}\n" for at, each in enumerate(values)
-    )
+@pytest.mark.parametrize(("level", "value"), [(0.08, 0.88), (0.3, 0.027)])
+def test_a_value_ten_times_its_neighbours_is_warned_of(read, level, value):
+    cells = dict.fromkeys(range(380, 781, 5), level) | {580: value}
     with warns("odd-value") as caught:
-        read(text)
+        read("nm,a\n" + "".join(f"{at},{cell}\n" for at, cell in cells.items()))
     assert (caught[0].entry, "580 nm" in caught[0].problem) == ("a", True)
+
+
+PAIRS = lines().split()
+NUMBERED = "".join(row(str(number)) for number in range(101, 801, 100))
+WAVE_NUMBERS = [f"{1e7 / at:.6f}" for at in NM]
 
 
 @pytest.mark.parametrize(
     "text",
     [
-        lines("{:g}.0 {:g}"),
-        "Data from x\nUser: u\n>>>>>Begin Spectral Data<<<<<\n"
-        + lines("{:g}\t{:g}")
-        + ">>>>>End<<<<<\nsigned\n",
-        lines("{:g},0;{:g}").replace("0.", "0,"),
-        "nm;a\n" + lines("{:g},0;{:g}").replace("0.", "0,"),
-        "nm,a,nm,b\n" + lines("{0:g},{1:g},{0:g},{1:g}"),
-        "pixel,nm,a\n"
-        + "".join(f"{at},{line}\n" for at, line in enumerate(lines().split())),
-        "nm,cm-1,a\n"
-        + "".join(
-            f"{at:g},{1e7 / at:.6f},{value:g}\n"
-            for at, value in zip(NM, VALUES, strict=True)
-        ),
-        "nm,a,,\n" + lines("{:g},{:g},,"),
+        "pixel,nm,a\n" + "".join(f"{at},{pair}\n" for at, pair in enumerate(PAIRS)),
+        "nm,cm-1,a\n" + "".join(map("{},{},{}\n".format, NM, WAVE_NUMBERS, VALUES)),
         "nm,a,nm,b\n" + lines("{0:g},{1:g},{0:g},{1:g}") + ",,900,\n,,920,\n",
         "nm,a\n" + lines().replace("600", "nm,a\n600"),
         HEADER + row("a") + HEADER + row("b"),
-        HEADER + "".join(",%" for _ in NM) + "\n" + row("a", 100),
-        HEADER + "".join(",nm" for _ in NM) + "\n" + row("a"),
+        HEADER + ",%" * len(NM) + "\n" + row("a", 100),
+        HEADER + ",nm" * len(NM) + "\n" + row("a"),
         f"{len(NM)}\n" + lines("{:g}\t{:g}"),
         "a,,b,\nnm,R,nm,R\n" + lines("{0:g},{1:g},{0:g},{1:g}"),
         "of 2024,1\n" + lines("{:g},{:g},").replace("\n", "") + "\nn,9\n",
         lines("{:g} {:g}, ").replace("\n", ""),
-        "Paint,wave,R\n"
-        + "".join(lines(f"{name},{{:g}},{{:g}}") for name in ("NA", 1)),
-        "Sample No,"
-        + HEADER[5:]
-        + "".join(row(str(number)) for number in range(101, 801, 100)),
+        "\n".join(map(" ".join, np.reshape(lines("{:g} {:g}").split(), (-1, 6)))),
+        "Paint,wave,R\n" + lines("NA,{:g},{:g}") + lines("1,{:g},{:g}"),
+        HEADER.replace("name", "Sample No") + NUMBERED,
     ],
 )
 def test_where_a_table_begins_and_ends(read, text):
@@ -310,37 +242,11 @@ def test_a_column_before_each_spectrum_may_have_its_name(read, pair):
     check_values(atlas)
 
 
-def test_pairs_on_a_line_are_one_spectrum(read):
-    pairs = [f"{at:g} {value:g}" for at, value in zip(NM, VALUES, strict=True)]
-    atlas = read(
-        "\n".join(" ".join(pairs[at : at + 3]) for at in range(0, len(pairs), 3)),
-        "paint.txt",
-    )
-    assert atlas.names == ("paint",)
-    check_values(atlas)
-
-
 def test_a_second_table_is_skipped_by_name(read):
     with warns("entry-skipped"):
         atlas = read("nm R\n" + lines("{:g} {:g}") + "\nnm R\n" + lines("{:g} {:g}"))
     assert [entry.line for entry in atlas.skipped] == [25]
     check_values(atlas)
-
-
-@pytest.mark.parametrize(
-    "text",
-    [
-        "nm,"
-        + ",".join(map(str, range(101, 801)))
-        + "\n"
-        + lines("{:g},{:g}" + ",0.5" * 699),
-        lines("{:g} {:g} 0.5"),
-        "nm,a\n" + lines("{:g},0,{:g}"),
-    ],
-)
-def test_tables_that_may_mean_two_things_are_refused(read, text):
-    with raises(AtlasError):
-        read(text)
 
 
 @pytest.mark.parametrize(
@@ -359,35 +265,15 @@ def test_errors_show_the_line_that_was_not_understood(read, text, line):
 
 
 def test_values_without_their_wavelengths(tmp_path):
-    (tmp_path / "a.txt").write_text(
-        "a paint\n" + "".join(f"{value}\n" for value in VALUES)
-    )
+    path = tmp_path / "a.txt"
+    path.write_text("a paint\n" + "".join(f"{value}\n" for value in VALUES))
+    waves = "".join(f"{at / 1000}\n" for at in NM)
     with raises(AtlasError, "not-an-atlas"):
-        read_atlas(tmp_path / "a.txt")
-    for name in ("Wavelengths_1.txt", "Wavelengths_2.txt"):
-        (tmp_path / name).write_text(
-            "Wavelengths in microns\n" + "".join(f"{at / 1000}\n" for at in NM)
-        )
-        if name == "Wavelengths_1.txt":
-            atlas = read_atlas(tmp_path / "a.txt")
-            check_values(atlas)
-            assert any(name in note for note in atlas.sources[0].notes)
+        read_atlas(path)
+    (tmp_path / "Wavelengths_1.txt").write_text("Wavelengths in microns\n" + waves)
+    atlas = read_atlas(path)
+    check_values(atlas)
+    assert any("Wavelengths_1.txt" in note for note in atlas.sources[0].notes)
+    (tmp_path / "Wavelengths_2.txt").write_text("Wavelengths in microns\n" + waves)
     with raises(AtlasError, "not-an-atlas"):  # which of the two?
-        read_atlas(tmp_path / "a.txt")
-
-
-@pytest.mark.parametrize(("xy", "factor"), [("{:g},0 {}", 100), ("{:g},0; {}", 100)])
-def test_decimal_commas_of_jcamp(read, xy, factor):
-    head = (
-        "##TITLE=a\n##JCAMP-DX=4.24\n##XUNITS=NANOMETERS\n##YUNITS=% "
-        "REFLECTANCE\n##XYPOINTS=(XY..XY)\n"
-    )
-    text = "".join(
-        xy.format(at, f"{value * factor:.4f}".replace(".", ",")) + "\n"
-        for at, value in zip(NM, VALUES, strict=True)
-    )
-    check_values(read(head + text + "##END=\n"))
-    pairs = "".join(
-        f"{at:g},{value * factor:.0f}\n" for at, value in zip(NM, VALUES, strict=True)
-    )
-    check_values(read(head + pairs + "##END=\n"), np.round(VALUES, 2))
+        read_atlas(path)

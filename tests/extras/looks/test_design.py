@@ -54,59 +54,42 @@ def materials(sensor):
     return measured, uplift.load().reflectance(np.clip(sensor.rgb(measured), 0, 1))
 
 
-@pytest.mark.parametrize(
-    "names", [("FL11",), ("A", "HP1"), ("A", "FL2", "FL11", "LED-B3")]
-)
+@pytest.mark.parametrize("names", [("FL11",), ("A", "FL2", "FL11", "LED-B3")])
 def test_looks_of_real_materials_are_met_in_their_entry_fit(sensor, materials, names):
     lights = [observer.light(name) for name in names]
     model = Moments(17)
-    goals = [goal_of(sensor, lights, spectrum) for spectrum in materials[0]]
-    designs = np.array(
-        [
-            design_reflectance(sensor, *each)
-            for each in zip(goals, materials[1], strict=True)
-        ]
-    )
+    goals = []
+    fits = []
+    for spectrum, expected in zip(*materials, strict=True):
+        goals.append(goal_of(sensor, lights, spectrum))
+        fits.append(design_reflectance(sensor, goals[-1], expected))
+    designs = np.array(fits)
     assert designs.min() >= 0
     assert designs.max() <= 1
     fitted = fit_designs(Problem(sensor, model), goals, designs)
     answers = evaluate(model, fitted.multipliers, sensor.wavelengths)
     assert np.abs(sensor.rgb(answers) - fitted.rgb).max() <= TOLERANCE
-    distances = np.array(
-        [goal.delta_e(answer) for goal, answer in zip(goals, answers, strict=True)]
-    )
-    assert distances.max() <= MET
-
-
-def impossible(sensor, materials):
-    """A material, and a goal that swaps its channels under tungsten."""
-    measured, expected = materials
-    row = 7  # purplish blue
-    light = observer.light("A")
-    other = measured[row] * np.linspace(0.2, 2.5, measured.shape[1]).clip(0, 2)
-    return goal_of(
-        sensor, [light], np.clip(other, 0, 1), sensor.rgb(expected[row])
-    ), expected[row]
+    for goal, answer in zip(goals, answers, strict=True):
+        assert goal.delta_e(answer).max() <= MET
 
 
 def test_nearest_colour_is_that_of_a_linear_program(sensor, materials):
     """No metamer lies farther towards the wish, in the metric of ΔE00 at the wish."""
-    goal, expected = impossible(sensor, materials)
+    measured, expected = (spectra[7] for spectra in materials)  # purplish blue
+    light = observer.light("A")
+    other = np.clip(measured * np.linspace(0.2, 2.5, 81), 0, 1)
+    goal = goal_of(sensor, [light], other, sensor.rgb(expected))
     found = design_reflectance(sensor, goal, expected)
     assert goal.delta_e(found)[0] > 1
     assert_allclose(sensor.rgb(found), goal.rgb, atol=1e-4)
-    (light,) = goal.lights
-    (wish,) = goal.xyz
     xyz = goal.colours(found)[0]
-    wished = lab(wish, light.white)
-    answered = lab(xyz, light.white)
+    wished = lab(goal.xyz[0], light.white)
     weights = delta_e_2000_weights(wished)
-    towards = (weights @ (wished - answered)) @ (
-        weights @ lab_jacobian(xyz, light.white) @ light.xyz
-    )
+    apart = weights @ (wished - lab(xyz, light.white))
+    towards = apart @ (weights @ lab_jacobian(xyz, light.white) @ light.xyz)
     best = linprog(-towards, A_eq=sensor.matrix, b_eq=sensor.rgb(found), bounds=(0, 1))
     assert best.status == 0
-    length = np.linalg.norm(weights @ (wished - answered))
+    length = np.linalg.norm(apart)
     assert (-best.fun - towards @ found) / length < 0.02 * length
     # the test can fail: the expected spectrum is not the nearest
     assert (-best.fun - towards @ expected) / length > 0.2 * length
@@ -116,18 +99,16 @@ def test_the_prior_follows_looks_nearby_only(sensor, materials):
     measured, expected = materials
     light = observer.light("FL11")
     problem = Problem(sensor, Moments(9), (light,), light)
-    entries = fit_entries(
-        problem, measured[:6], np.clip(sensor.rgb(measured[:6]), 0, 1)
-    )
+    known = measured[:6]
+    entries = fit_entries(problem, known, np.clip(sensor.rgb(known), 0, 1))
     plain = fit_prior(problem, entries)
-    goal = goal_of(sensor, [light], 0.9 * expected[7] + 0.05, sensor.rgb(expected[7]))
-    look = fit_designs(
-        problem, [goal], design_reflectance(sensor, goal, expected[7])[None]
-    )
+    rgb = sensor.rgb(expected[7])
+    goal = goal_of(sensor, [light], 0.9 * expected[7] + 0.05, rgb)
+    design = design_reflectance(sensor, goal, expected[7])
+    look = fit_designs(problem, [goal], design[None])
     changed = prior_with_looks(plain, join_entries(entries, look), 1)
-    assert changed.errors is plain.errors
-    assert changed.kriging.kernel == plain.kriging.kernel
-    near = goal.rgb[None] * 1.01
-    far = np.array([[0.9, 0.9, 0.2]])
-    move = [np.abs(changed(rgb) - plain(rgb)).max() for rgb in (near, far)]
-    assert move[0] > 10 * move[1]
+    near, far = (
+        np.abs(changed(each) - plain(each)).max()
+        for each in (rgb[None] * 1.01, np.array([[0.9, 0.9, 0.2]]))
+    )
+    assert near > 10 * far

@@ -34,7 +34,7 @@ POSITIONS = [
     (1.3, -0.7),
     (-0.2, 1.9),
 ]
-WITHIN = 1e-5  # tolerance of linear RGB in single precision
+AT = np.array([450.0, 650.0])
 
 
 @pytest.fixture
@@ -42,9 +42,8 @@ def texture(mi, cube_path):
     """Function that makes a texture, by default of `IMAGE`."""
 
     def texture(image=IMAGE, **options):
-        return mi.load_dict(
-            {"type": "uplift", "cube": cube_path, "bitmap": mi.Bitmap(image), **options}
-        )
+        source = {} if image is None else {"bitmap": mi.Bitmap(image)}
+        return mi.load_dict({"type": "uplift", "cube": cube_path, **source, **options})
 
     return texture
 
@@ -62,199 +61,125 @@ def test_filtering_agrees_with_mitsuba_s_bitmap(mi, texture, spectrum, sensor, o
     import drjit
 
     ours = texture(**options)
-    reference = mi.load_dict(
-        {"type": "bitmap", "bitmap": mi.Bitmap(IMAGE), "raw": True, **options}
-    )
+    image = {"bitmap": mi.Bitmap(IMAGE), "raw": True}
+    theirs = mi.load_dict({"type": "bitmap", **image, **options})
     si = drjit.zeros(mi.SurfaceInteraction3f)
     for uv in POSITIONS:
         si.uv = mi.Point2f(*uv)
         found = sensor.rgb(spectrum(ours, uv, sensor.wavelengths))
-        assert_allclose(found, np.array(reference.eval_3(si)), rtol=0, atol=WITHIN)
+        assert_allclose(found, np.array(theirs.eval_3(si)), rtol=0, atol=1e-5)
 
 
-def test_a_texel_of_an_entry_s_colour_has_the_entry_s_spectrum(
-    texture, spectrum, small_cube
+def test_texels_of_an_entry_outside_the_space_have_its_spectrum(
+    mi, texture, spectrum, cyan_cube, tmp_path
 ):
     """The other texels of the image keep theirs, though they have more multipliers than
     without the entry.
     """
-    atlas = small_cube.data.atlas
-    image = np.array([[atlas.rgb[3], [0.01, 0.01, 0.2]]], dtype=np.float32)
-    found = texture(image, filter_type="nearest")
-    entry = small_cube.data.atlas.spectra.reflectance(
-        np.array([3]), np.array([450.0, 650.0])
-    )[0]
-    assert_allclose(spectrum(found, (0.25, 0.5), [450, 650]), entry, atol=1e-5)
-    other = small_cube.reflectance(image[0, 1], [450, 650], mode="refined")
-    assert_allclose(spectrum(found, (0.75, 0.5), [450, 650]), other, atol=1e-5)
-
-
-def test_texels_of_an_entry_outside_the_space_have_its_spectrum(
-    mi, spectrum, cyan_cube, tmp_path
-):
-    """A bitmap, an OpenEXR file and a colour; beyond the entry a colour is mapped."""
     cyan_cube.save(tmp_path / "cyan.uplift")
-    at = np.array([450.0, 650.0])
-    rgb = cyan_cube.data.atlas.outside.rgb[0]
-    entry = cyan_cube.data.atlas.outside.spectra.reflectance(np.array([0]), at)[0]
-    pixels = np.array([[rgb, [1, 0.2, 0]]], dtype=np.float32)
-    write_exr(tmp_path / "image.exr", planes(pixels))
-    every = {"type": "uplift", "cube": str(tmp_path / "cyan.uplift")}
-    nearest = every | {"filter_type": "nearest", "out_of_gamut": "error"}
-    for source in (
-        {"bitmap": mi.Bitmap(pixels)},
-        {"filename": str(tmp_path / "image.exr")},
-    ):
-        assert_allclose(
-            spectrum(mi.load_dict(nearest | source), (0.25, 0.5), at), entry, atol=1e-5
-        )
-    colour = ", ".join(map(repr, rgb.tolist()))
-    assert_allclose(
-        spectrum(mi.load_dict(every | {"rgb": colour}), (0.5, 0.5), at),
-        entry,
-        atol=1e-5,
-    )
-    pixels[0, 0] = rgb - [0.5, 0, 0]
-    with warns("pixels-out-of-gamut", "texture-in-python"):
-        found = mi.load_dict(
-            every | {"bitmap": mi.Bitmap(pixels), "filter_type": "nearest"}
-        )
-    mapped = cyan_cube.reflectance(pixels[0, 0].clip(0, 1), at, mode="refined")
-    assert_allclose(spectrum(found, (0.25, 0.5), at), mapped, atol=1e-5)
+    outside = cyan_cube.data.atlas.outside
+    entry = outside.spectra.reflectance(np.array([0]), AT)[0]
+    pixels = np.float32([[outside.rgb[0], [0.01, 0.01, 0.2]]])
+    path = write_exr(tmp_path / "image.exr", planes(pixels))
+    other = cyan_cube.reflectance(pixels[0, 1], AT, mode="refined")
+    options = {"cube": str(tmp_path / "cyan.uplift"), "filter_type": "nearest"}
+    for source in ({"bitmap": mi.Bitmap(pixels)}, {"filename": str(path)}):
+        found = texture(None, out_of_gamut="error", **source, **options)
+        assert_allclose(spectrum(found, (0.25, 0.5), AT), entry, atol=1e-5)
+        assert_allclose(spectrum(found, (0.75, 0.5), AT), other, atol=1e-5)
+    colour = ", ".join(map(repr, outside.rgb[0].tolist()))
+    found = texture(None, rgb=colour, cube=options["cube"])
+    assert_allclose(spectrum(found, (0.5, 0.5), AT), entry, atol=1e-5)
 
 
 def test_only_encoded_files_are_decoded_and_layers_are_read(
-    mi, spectrum, small_cube, tmp_path, cube_path
+    mi, texture, spectrum, small_cube, tmp_path
 ):
     codes = np.array([[[200, 30, 90]]], dtype=np.uint8)
     linear = small_cube.decode(codes).astype(np.float32)
     mi.Bitmap(codes).write(str(tmp_path / "image.png"))
-    layer = {f"paint.{name}": linear[..., index] for index, name in enumerate("RGB")}
+    layer = {f"paint.{name}": plane for name, plane in planes(linear).items()}
     write_exr(tmp_path / "image.exr", {**layer, "Z": np.ones((1, 1), np.float32)})
-    expected = small_cube.reflectance(linear[0, 0], [450, 650], mode="refined")
+    expected = small_cube.reflectance(linear[0, 0], AT, mode="refined")
     for name in ("image.png", "image.exr"):
-        found = mi.load_dict(
-            {"type": "uplift", "cube": cube_path, "filename": str(tmp_path / name)}
-        )
-        assert_allclose(spectrum(found, (0.5, 0.5), [450, 650]), expected, atol=1e-5)
+        found = texture(None, filename=str(tmp_path / name))
+        assert_allclose(spectrum(found, (0.5, 0.5), AT), expected, atol=1e-5)
 
 
-@pytest.mark.parametrize(
-    ("options", "message"),
-    [
-        ({"wrap_mode": "round"}, "unknown wrap_mode 'round'"),
-        (
-            {"image": 2 * IMAGE, "out_of_gamut": "error"},
-            "set the property out_of_gamut to clip",
-        ),
-        ({"out_of_gamut": "ignore"}, "unknown .*'ignore'"),
-    ],
-)
-def test_invalid_properties_raise(texture, options, message):
-    with pytest.raises(RuntimeError, match=message):
-        texture(**options)
-
-
-@pytest.mark.parametrize(
-    ("options", "expected"), [({}, [1, 0.2, 0]), ({"out_of_gamut": "scale"}, None)]
-)
-def test_colours_outside_are_mapped_with_a_warning(
-    texture, spectrum, sensor, options, expected
-):
+def test_colours_outside_are_mapped_with_a_warning(texture, spectrum, sensor):
     image = np.array([[[1.4, 0.2, -0.01], [0.1, 0.2, np.nan]]], dtype=np.float32)
     with warns("pixels-out-of-gamut", "pixels-not-finite", "texture-in-python"):
-        found = texture(image, filter_type="nearest", **options)
-    rgb = [
-        sensor.rgb(spectrum(found, (u, 0.5), sensor.wavelengths)) for u in (0.25, 0.75)
-    ]
-    first = (
-        map_to_gamut(image[0, 0], sensor, "scale").rgb if expected is None else expected
-    )
-    assert_allclose(rgb, [first, [0.1, 0.2, 0]], rtol=0, atol=1e-4)
+        found = texture(image, filter_type="nearest", out_of_gamut="scale")
+    mapped = map_to_gamut(image[0, 0], sensor, "scale").rgb
+    for u, expected in ((0.25, mapped), (0.75, [0.1, 0.2, 0])):
+        rgb = sensor.rgb(spectrum(found, (u, 0.5), sensor.wavelengths))
+        assert_allclose(rgb, expected, rtol=0, atol=1e-4)
+
+
+@pytest.mark.parametrize(
+    ("factor", "options", "message"),
+    [
+        (1, {"wrap_mode": "round"}, "unknown wrap_mode 'round'"),
+        (2, {"out_of_gamut": "error"}, "set the property out_of_gamut to clip"),
+    ],
+)
+def test_invalid_properties_raise(texture, factor, options, message):
+    with pytest.raises(RuntimeError, match=message):
+        texture(factor * IMAGE, **options)
 
 
 def test_the_stochastic_filter_chooses_texels_by_their_weights(texture, spectrum):
-    image = np.array([[[0.1, 0.1, 0.1], [0.8, 0.8, 0.8]]], dtype=np.float32)
+    image = np.repeat(np.float32([[[0.1], [0.8]]]), 3, axis=-1)
     found = texture(image, filter_type="stochastic", wrap_mode="clamp")
-    values = np.array(
-        spectrum(found, (0.35, 0.5), np.linspace(500, 600, 1000))
-    )  # weights 0.8 and 0.2
+    at = np.linspace(500, 600, 1000)
+    values = np.array(spectrum(found, (0.35, 0.5), at))  # weights 0.8 and 0.2
     assert set(values.round(1)) == {0.1, 0.8}
     assert (values < 0.4).mean() == pytest.approx(0.8, abs=0.05)
 
 
-OPTIONS = [
-    {"filter_type": filter_type, "wrap_mode": wrap_mode}
-    for filter_type, wrap_mode in itertools.product(
-        ("bilinear", "nearest", "stochastic"), ("repeat", "mirror", "clamp")
-    )
-]
-
-JIT = """
+FILTERS = ("bilinear", "nearest", "stochastic")
+WRAPS = ("repeat", "mirror", "clamp")
+EVALUATE = """
 import json, sys
 import drjit, mitsuba as mi, numpy as np
 from uplift.extras.mitsuba import register
-mi.set_variant("llvm_ad_spectral")
-register()
-sources, options, positions = map(json.loads, sys.argv[1:])
-image = np.random.default_rng(8).random((3, 4, 3), dtype=np.float32)
+properties, positions = map(json.loads, sys.argv[1:])
 found = []
-for source in sources:
-    for each in options:
-        properties = dict(source)
-        if "filename" not in source:
-            properties["bitmap"] = mi.Bitmap(image)
-        texture = mi.load_dict({"type": "uplift", **properties, **each})
-        si = drjit.zeros(mi.SurfaceInteraction3f, len(positions))
-        si.uv = mi.Point2f(*np.array(positions, dtype=np.float32).T)
-        si.wavelengths = mi.Spectrum(400, 500, 600, 700)
-        found.append(np.array(texture.eval(si)).T.tolist())
+for variant, size in (("scalar_spectral", 1), ("llvm_ad_spectral", len(positions))):
+    mi.set_variant(variant)
+    register()
+    for each in properties:
+        texture = mi.load_dict({"type": "uplift", **each})
+        for first in range(0, len(positions), size):
+            si = drjit.zeros(mi.SurfaceInteraction3f, size)
+            rows = np.float32(positions[first:first + size]).T
+            si.uv = mi.Point2f(*(rows if size > 1 else rows[:, 0].tolist()))
+            si.wavelengths = mi.Spectrum(400, 500, 600, 700)
+            found += np.array(texture.eval(si)).reshape(4, -1).T.tolist()
 print(json.dumps(found))
 """
 
 
 def test_a_wavefront_agrees_with_single_rays(mi, small_cube, cube_path, tmp_path):
+    """Of an image, and of textures of moments and of spectra."""
     need(LLVM)
-    import drjit
-
-    sources = [{"cube": cube_path}, *_textures(small_cube, tmp_path)]
-    arguments = [json.dumps(each) for each in (sources, OPTIONS, POSITIONS)]
-    found = json.loads(run_python(JIT, *arguments))
-    expected = []
-    for source in sources:
-        for options in OPTIONS:
-            bitmap = {} if "filename" in source else {"bitmap": mi.Bitmap(IMAGE)}
-            texture = mi.load_dict({"type": "uplift", **source, **bitmap, **options})
-            values = []
-            for uv in POSITIONS:
-                si = drjit.zeros(mi.SurfaceInteraction3f)
-                si.uv = mi.Point2f(*uv)
-                si.wavelengths = mi.Spectrum(400, 500, 600, 700)
-                values.append(np.array(texture.eval(si)))
-            expected.append(values)
-    assert_allclose(found, expected, rtol=0, atol=1e-5)
-
-
-def _textures(cube, folder):
-    """Write the image as textures of moments and of spectra."""
-    source = write_exr(folder / "image.exr", planes(IMAGE))
-    for name, encoding in (
-        ("moments", textures.Moments()),
-        ("spectrum", textures.Spectrum()),
-    ):
-        target = folder / f"{name}.exr"
-        textures.convert(textures.prepare(cube, encoding), source, target)
-        yield {"filename": str(target)}
+    image = write_exr(tmp_path / "image.exr", planes(IMAGE))
+    sources = [{"cube": cube_path, "filename": str(image)}]
+    for encoding in (textures.Moments(), textures.Spectrum()):
+        target = tmp_path / f"{encoding.name}.exr"
+        textures.convert(textures.prepare(small_cube, encoding), image, target)
+        sources.append({"filename": str(target)})
+    properties = [
+        {"filter_type": filter_type, "wrap_mode": wrap, **source}
+        for source, filter_type, wrap in itertools.product(sources, FILTERS, WRAPS)
+    ]
+    arguments = [json.dumps(each) for each in (properties, POSITIONS)]
+    values = np.array(json.loads(run_python(EVALUATE, *arguments)))
+    assert_allclose(*np.split(values, 2), rtol=0, atol=1e-5)
 
 
 # Two of them lie beyond the samples, and none halfway between samples that differ much.
 WAVELENGTHS = np.array([362.5, 402.5, 555, 650, 823])
-
-
-def flat(value, *wavelengths):
-    return {
-        f"T.{at},000000nm": np.full((2, 2), value, np.float32) for at in wavelengths
-    }
 
 
 @pytest.mark.parametrize(
@@ -269,64 +194,57 @@ def flat(value, *wavelengths):
 def test_a_texture_has_the_spectra_of_the_cube(
     mi, spectrum, small_cube, tmp_path, encoding, mode, within
 ):
-    write_exr(tmp_path / "image.exr", planes(IMAGE))
+    image = write_exr(tmp_path / "image.exr", planes(IMAGE))
     uplifter = textures.prepare(small_cube, encoding, depth="float")
-    textures.convert(uplifter, tmp_path / "image.exr", tmp_path / "texture.exr")
-    found = mi.load_dict(
-        {
-            "type": "uplift",
-            "filename": str(tmp_path / "texture.exr"),
-            "filter_type": "nearest",
-        }
-    )
+    path = textures.convert(uplifter, image, tmp_path / "texture.exr").target
+    nearest = {"type": "uplift", "filter_type": "nearest", "filename": str(path)}
+    found = spectrum(mi.load_dict(nearest), (0.4, 0.9), WAVELENGTHS)
     expected = small_cube.reflectance(IMAGE[2, 1], WAVELENGTHS, mode=mode)
-    assert_allclose(
-        spectrum(found, (0.4, 0.9), WAVELENGTHS), expected, rtol=0, atol=within
-    )
+    assert_allclose(found, expected, rtol=0, atol=within)
+
+
+def flat(values, pattern="T.{},000000nm"):
+    """Channels of one value each, by number."""
+    return {
+        pattern.format(number): np.full((2, 2), value, np.float32)
+        for number, value in values.items()
+    }
+
+
+def grey(second=0.0):
+    """Moments of a grey, and another second moment."""
+    values = {"00": 0.5, "01": second} | {f"{order:02}": 0.0 for order in range(2, 9)}
+    return flat(values, "moment.{}")
 
 
 MODEL = {"uplift.model": json.dumps(Moments(9).describe())}
-GREY = {
-    f"moment.{order:02}": np.full((2, 2), 0.5 * (order == 0), np.float32)
-    for order in range(9)
-}
 
 
 @pytest.mark.parametrize(
     ("channels", "header"),
     [
-        (flat(1, 400, 500, 700), {}),
-        (flat(np.nan, 400, 500), {}),
-        (GREY, {}),
-        (GREY, {"uplift.model": "{"}),
-        ({**GREY, "moment.01": np.full((2, 2), 0.6, np.float32)}, MODEL),
-        (None, MODEL),
+        (flat({400: 1, 500: 1, 700: 1}), {}),
+        (flat({400: np.nan, 500: np.nan}), {}),
+        (grey(), {}),
+        (grey(), {"uplift.model": "{"}),
+        (grey(0.6), MODEL),
     ],
 )
 def test_invalid_textures_raise(tmp_path, channels, header):
-    path = write_exr(
-        tmp_path / "texture.exr", GREY if channels is None else channels, **header
-    )
-    if channels is None:
-        path.write_bytes(path.read_bytes()[:-20])
+    path = write_exr(tmp_path / "texture.exr", channels, **header)
     with raises(TextureError):
         read_texels(path)
 
 
-SAMPLED = [340.0, 401.5, 555.0, 820.0]
-MODELS = [
-    Moments(9),
-    Moments(3),
-    Moments(17, 400, 700, "vision"),
-    Sigmoid(),
-    Sigmoid(400, 700),
-]
-
-
-@pytest.mark.parametrize("model", MODELS, ids=str)
+@pytest.mark.parametrize(
+    "model",
+    [Moments(9), Moments(3), Moments(17, 400, 700, "vision"), Sigmoid(400, 700)],
+    ids=str,
+)
 def test_blend_is_the_weighted_sum(mi, model):
+    at = [340.0, 401.5, 555.0, 820.0]
     multipliers = np.random.default_rng(2).normal(size=(3, model.count))
     weights = [0.5, 0.2, 0.3]
-    found = blend(model, multipliers.tolist(), weights, mi.Spectrum(*SAMPLED))
-    expected = weights @ evaluate(model, multipliers, SAMPLED)
+    found = blend(model, multipliers.tolist(), weights, mi.Spectrum(*at))
+    expected = weights @ evaluate(model, multipliers, at)
     assert_allclose(np.array(found), expected, rtol=0, atol=1e-5)

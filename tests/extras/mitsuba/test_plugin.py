@@ -22,17 +22,27 @@ WAVELENGTHS = np.arange(362.5, 830, 50)
 
 
 @pytest.mark.parametrize(
-    "rgb", [COLOUR, np.array(COLOUR), "0.5, 0.25, 0.1", "0.5 0.25 0.1"]
+    ("rgb", "is_default"),
+    [
+        (COLOUR, True),
+        (np.array(COLOUR), False),
+        ("0.5, 0.25, 0.1", False),
+        ("0.5 0.25 0.1", False),
+    ],
 )
-@pytest.mark.parametrize("is_default", [True, False])
 def test_a_colour_has_the_spectrum_of_the_cube(
     mi, cube_path, spectrum, small_cube, rgb, is_default
 ):
-    texture = mi.load_dict(
-        {"type": "uplift", "rgb": rgb, **({} if is_default else {"cube": cube_path})}
-    )
-    expected = (load() if is_default else small_cube).reflectance(COLOUR, WAVELENGTHS)
+    chosen = {} if is_default else {"cube": cube_path}
+    texture = mi.load_dict({"type": "uplift", "rgb": rgb, **chosen})
+    cube = load() if is_default else small_cube
+    expected = cube.reflectance(COLOUR, WAVELENGTHS)
     assert_allclose(spectrum(texture, (0, 0), WAVELENGTHS), expected, rtol=0, atol=1e-4)
+
+
+SCENE = """<scene version="3.0.0"><bsdf type="diffuse">
+<texture type="uplift" name="reflectance"><{} name="rgb" value="0.5, 0.25, 0.1"/>
+<string name="cube" value="moments-8.uplift"/></texture></bsdf></scene>"""
 
 
 @pytest.mark.parametrize("tag", ["rgb", "string"])
@@ -40,14 +50,7 @@ def test_scenes_can_be_xml_and_cubes_are_found_by_the_file_resolver(
     mi, repository, tag
 ):
     mi.file_resolver().prepend(str(repository / "cubes"))
-    colour = (
-        f'<{tag} name="rgb" value="0.5, 0.25, 0.1"/><string name="cube" '
-        'value="moments-8.uplift"/>'
-    )
-    texture = f'<texture type="uplift" name="reflectance">{colour}</texture>'
-    scene = mi.load_string(
-        f'<scene version="3.0.0"><bsdf type="diffuse">{texture}</bsdf></scene>'
-    )
+    scene = mi.load_string(SCENE.format(tag))
     assert "RegularSpectrum" in str(scene)
 
 
@@ -60,6 +63,7 @@ def test_scenes_can_be_xml_and_cubes_are_found_by_the_file_resolver(
         ({"rgb": COLOUR, "cube": "missing.uplift"}, "missing.uplift: "),
         ({"rgb": COLOUR, "wrap": "clamp"}, "unreferenced"),
         ({"filename": "missing.png"}, "No such file"),
+        ({"rgb": COLOUR, "out_of_gamut": "ignore"}, "unknown .*'ignore'"),
         ({"type": "uplift_envmap"}, "must have one of filename, bitmap"),
         ({"emission": True, "rgb": "-3, 1, -2"}, "no light has the colour"),
         (
@@ -88,7 +92,6 @@ def test_missing_mitsuba_raises(monkeypatch):
         register()
 
 
-SUNSET = (3.0, 1.0, 0.2)
 SAMPLED = (450.0, 520.5, 600.0)
 
 
@@ -124,35 +127,32 @@ def radiance(mi):
 
 
 def environment(mi, rgb, **properties):
-    return mi.load_dict(
-        {"type": "uplift_envmap", "bitmap": mi.Bitmap(rgb), **properties}
-    )
+    image = {"bitmap": mi.Bitmap(rgb)}
+    return mi.load_dict({"type": "uplift_envmap", **image, **properties})
+
+
+def light(mi, **properties):
+    return mi.load_dict({"type": "uplift", "emission": True, **properties})
 
 
 def test_colours_have_the_spectra_of_the_table(mi, table, sky, spectrum):
-    light = mi.load_dict({"type": "uplift", "emission": True, "rgb": list(SUNSET)})
+    sunset = [3.0, 1.0, 0.2]
     exact = 450.0, 520.0, 600.0
-    assert_allclose(
-        spectrum(light, (0.5, 0.5), exact), table.spectrum(SUNSET, exact), rtol=1e-5
-    )
-    light = mi.load_dict({"type": "uplift", "emission": True, "bitmap": mi.Bitmap(sky)})
+    found = spectrum(light(mi, rgb=sunset), (0.5, 0.5), exact)
+    assert_allclose(found, table.spectrum(sunset, exact), rtol=1e-5)
+    image = light(mi, bitmap=mi.Bitmap(sky))
     for row, column in ((0, 0), (2, 3), (7, 15)):
-        found = spectrum(light, ((column + 0.5) / 16, (row + 0.5) / 8), SAMPLED)
+        found = spectrum(image, ((column + 0.5) / 16, (row + 0.5) / 8), SAMPLED)
         assert_allclose(found, table.spectrum(sky[row, column], SAMPLED), rtol=1e-4)
 
 
 def test_images_and_spectral_images_agree(mi, table, sky, spectrum, tmp_path):
     source = write_exr(tmp_path / "sky.exr", planes(sky))
-    texture.convert(
-        texture.prepare_lights(table, threads=1), source, tmp_path / "spectral.exr"
-    )
+    converter = texture.prepare_lights(table, threads=1)
+    spectral = texture.convert(converter, source, tmp_path / "spectral.exr").target
     found = [
-        spectrum(
-            mi.load_dict({"type": "uplift", "emission": True, "filename": str(path)}),
-            (0.2, 0.3),
-            SAMPLED,
-        )
-        for path in (source, tmp_path / "spectral.exr")
+        spectrum(light(mi, filename=str(path)), (0.2, 0.3), SAMPLED)
+        for path in (source, spectral)
     ]
     assert_allclose(*found, rtol=1e-5)
 
@@ -160,16 +160,11 @@ def test_images_and_spectral_images_agree(mi, table, sky, spectrum, tmp_path):
 @pytest.mark.parametrize("degrees", [0, 70])
 def test_an_environment_lies_as_mitsubas_does(mi, radiance, degrees):
     """Both show the same ramp; the shapes of their white spectra differ."""
-    ramp = (1 + np.arange(8 * 16, dtype=np.float32).reshape(8, 16, 1)) * np.ones(
-        3, np.float32
-    )
-    to_world = mi.ScalarTransform4f().rotate([1, 2, 3], degrees)
-    ours = environment(mi, ramp, to_world=to_world, scale=2.0)
-    theirs = mi.load_dict(
-        {"type": "envmap", "bitmap": mi.Bitmap(ramp), "to_world": to_world}
-    )
-    rng = np.random.default_rng(0)
-    directions = rng.normal(size=(12, 3))
+    ramp = np.arange(1, 129, dtype=np.float32).reshape(8, 16, 1).repeat(3, axis=-1)
+    turned = {"to_world": mi.ScalarTransform4f().rotate([1, 2, 3], degrees)}
+    ours = environment(mi, ramp, scale=2.0, **turned)
+    theirs = mi.load_dict({"type": "envmap", "bitmap": mi.Bitmap(ramp), **turned})
+    directions = np.random.default_rng(0).normal(size=(12, 3))
     directions /= np.linalg.norm(directions, axis=1, keepdims=True)
     levels = np.array([radiance(ours, list(way), [560.0]) for way in directions])
     expected = np.array([radiance(theirs, list(way), [560.0]) for way in directions])

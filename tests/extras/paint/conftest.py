@@ -37,17 +37,6 @@ def paint(rng):
 
 
 @pytest.fixture(scope="session")
-def paints(small_cube):
-    """Linear RGB (3,) of the ColorChecker's coloured patches, by name."""
-    atlas = small_cube.data.atlas
-    return {
-        name: rgb
-        for name, rgb in zip(atlas.names, atlas.rgb, strict=True)
-        if np.ptp(rgb) > 0.1 * rgb.max()
-    }
-
-
-@pytest.fixture(scope="session")
 def three_paints():
     """White, yellow and red, with known K and S."""
     return invented(names=NAMES[:3])

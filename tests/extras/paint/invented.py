@@ -1,11 +1,9 @@
 """Invented paints, and samples of them as if measured."""
 
-from dataclasses import replace
 from itertools import product
 
 import numpy as np
 
-from uplift.colorimetry import observer
 from uplift.colorimetry.delta_e import delta_e_spectra
 from uplift.extras.paint.optics import Surface
 from uplift.extras.paint.paint_samples import MeasuredSpectra, PaintSamples
@@ -21,7 +19,7 @@ FILMS = tuple((paint, 0.5, ground) for paint, ground in product(range(3), (0.0, 
 """Films of the first three samples of `plan`, on a black and a light ground."""
 
 
-def invented(wavelengths=WAVELENGTHS, names=NAMES, surface=OIL):
+def invented(wavelengths=WAVELENGTHS, names=NAMES):
     """Return paints with smooth K and S: a white one, and others that absorb."""
     nm = wavelengths
     absorption = {
@@ -40,7 +38,7 @@ def invented(wavelengths=WAVELENGTHS, names=NAMES, surface=OIL):
         np.stack([absorption[name] for name in names]),
         np.stack([scattering[name] for name in names]),
     )
-    return Paints(tuple(names), nm, pigments, surface)
+    return Paints(tuple(names), nm, pigments, OIL)
 
 
 def plan(paints):
@@ -89,24 +87,9 @@ def measured(paints, shares, noise=0.0, films=(), seed=1):
     )
 
 
-def chosen(samples, rows):
-    """Return some of the samples, or all in another order."""
-    return replace(
-        samples,
-        names=tuple(samples.names[row] for row in rows),
-        shares=samples.shares[rows],
-        thickness=samples.thickness[rows],
-        grounds=samples.grounds[rows],
-        measured=type(samples.measured)(samples.measured.values[rows]),
-    )
-
-
 def mixture_errors(fitted, paints, count=200):
     """ΔE00 (count,) of random opaque mixtures between fitted paints and true ones."""
-    nm = paints.wavelengths
-    light = observer.light(
-        "D65", observer.DEFAULT_OBSERVER, nm[0], nm[-1], nm[1] - nm[0]
-    )
     shares = np.full(len(paints), 0.5)
     parts = np.random.default_rng(6).dirichlet(shares, count)
-    return delta_e_spectra(light, fitted.reflectance(parts), paints.reflectance(parts))
+    pair = (fitted.reflectance(parts), paints.reflectance(parts))
+    return delta_e_spectra(paints.light("D65"), *pair)

@@ -12,26 +12,26 @@ import numpy as np
 import pytest
 
 from tests.compiling import compile_in
-from tests.extras.export.run_program import STRICT, draw, padded
+from tests.extras.export.run_program import STRICT, draw
 from tests.helpers import output_of
 from tests.parts import CC, CHROMIUM, CXX, NODE, SANITIZED, SANITIZERS, need
 
 HOST = """
 #include <stdio.h>
-#include "{header}"
+#include "paint.h"
 
 int main(void)
-{{
+{
     float given[7], result[9];
-    while (fread(given, sizeof given, 1, stdin) == 1) {{
-        const float parts[2] = {{1 - given[6], given[6]}};
+    while (fread(given, sizeof given, 1, stdin) == 1) {
+        const float parts[2] = {1 - given[6], given[6]};
         paint_mix(given, given + 3, given[6], result);
         paint_mix_n(given, parts, 2, result + 3);
         paint_mix_srgb(given, given + 3, given[6], result + 6);
         fwrite(result, sizeof result, 1, stdout);
-    }}
+    }
     return 0;
-}}
+}
 """
 BYTES = """
 #include <stdio.h>
@@ -49,8 +49,8 @@ int main(void)
 }
 """
 MODULE = """
-import {{ readFileSync }} from "node:fs";
-import {{ mix, mixAll, mixSrgb }} from "./{module}";
+import { readFileSync } from "node:fs";
+import { mix, mixAll, mixSrgb } from "./paint.mjs";
 const pairs = JSON.parse(readFileSync(0, "utf8"));
 console.log(JSON.stringify(pairs.map(([first, second, share]) => [
   mix(first, second, share),
@@ -107,8 +107,7 @@ def run_c(path, host, given, compiler="c"):
 def c(path, pairs, shares, compiler="c"):
     """Return results (n, 3, 3) of mixing two, n, and codes."""
     given = np.column_stack([pairs.reshape(-1, 6), shares]).astype(np.float32)
-    host = HOST.format(header=path.name)
-    return run_c(path, host, given, compiler).reshape(-1, 3, 3)
+    return run_c(path, HOST, given, compiler).reshape(-1, 3, 3)
 
 
 def ends_of_bytes(path, pairs):
@@ -120,7 +119,7 @@ def js(path, pairs, shares):
     """Return results (n, 3, 3) of mixing two, n, and codes, by Node.js."""
     need(NODE)
     main = path.with_name("main.mjs")
-    main.write_text(MODULE.format(module=path.name))
+    main.write_text(MODULE)
     given = [
         [*pair, share]
         for pair, share in zip(pairs.tolist(), shares.tolist(), strict=True)
@@ -128,19 +127,24 @@ def js(path, pairs, shares):
     return np.array(json.loads(output_of("node", main, input=json.dumps(given))))
 
 
-def glsl(path, pairs, shares, dim):
-    """Return mixtures (n, 3), by WebGL 2 in Chromium."""
+def shade(path, code, pixels, upload="", **data):
+    """Return what a shader draws for pixels (n, 4), by WebGL 2 in Chromium."""
     need(CHROMIUM)
-    count = int(np.ceil(np.sqrt(len(pairs)))) ** 2
-    first = padded(pairs[:, 0], count)
-    first[: len(shares), 3] = shares
-    data = {
-        "code": FRAGMENT.format(code=path.read_text()),
-        "table": base64.b64encode(path.with_suffix(".bin").read_bytes()).decode(),
-        "seconds": base64.b64encode(padded(pairs[:, 1], count).tobytes()).decode(),
-        "dim": dim,
-    }
-    found = draw(path, first, data, UPLOAD)
+    side = int(np.ceil(np.sqrt(len(pixels))))
+    padding = np.zeros((side * side - len(pixels), 4))
+    first = np.concatenate([pixels, padding]).astype(np.float32)
+    data = {"table": "", **data, "code": code.format(code=path.read_text())}
+    found = draw(path, first, data, upload)
     if found is None:
         pytest.skip("the browser has no WebGL 2")
-    return found[: len(pairs), :3]
+    return found[: len(pixels)]
+
+
+def glsl(path, pairs, shares, dim):
+    """Return mixtures (n, 3), whose number is a square."""
+    first = np.column_stack([pairs[:, 0], shares])
+    second = np.column_stack([pairs[:, 1], shares])
+    table = base64.b64encode(path.with_suffix(".bin").read_bytes()).decode()
+    seconds = base64.b64encode(second.astype(np.float32).tobytes()).decode()
+    data = {"table": table, "seconds": seconds, "dim": dim}
+    return shade(path, FRAGMENT, first, UPLOAD, **data)[:, :3]

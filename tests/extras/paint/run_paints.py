@@ -5,15 +5,11 @@ the layer, and linear RGB.
 It skips the test if the compiler or the browser is lacking.
 """
 
-import base64
-
 import numpy as np
-import pytest
 
-from tests.extras.export.run_program import draw
-from tests.extras.paint.run_mixer import run_c
+from tests.extras.paint.run_mixer import run_c, shade
 from tests.helpers import output_of
-from tests.parts import CHROMIUM, GLSLANG, need
+from tests.parts import GLSLANG, need
 
 HOST = """
 #include <stdio.h>
@@ -39,7 +35,7 @@ uniform sampler2D colours;
 out vec4 found;
 void main() {{
     vec4 given = texelFetch(colours, ivec2(gl_FragCoord.xy), 0);
-    float parts[TUBES_PAINTS] = float[TUBES_PAINTS]({parts});
+    float parts[TUBES_PAINTS] = float[TUBES_PAINTS](2., 1., 0., .5);
     float ground[TUBES_SAMPLES], layer[TUBES_SAMPLES], rgb[3];
     for (int at = 0; at < TUBES_SAMPLES; ++at) ground[at] = given.b;
     tubes_layer(parts, given.a, ground, layer);
@@ -53,7 +49,7 @@ StructuredBuffer<float4> colours : register(t1);
 RWStructuredBuffer<float4> found : register(u2);
 [numthreads(64, 1, 1)]
 void main(uint3 id : SV_DispatchThreadID) {{
-    float parts[TUBES_PAINTS] = {{{parts}}};
+    float parts[TUBES_PAINTS] = {{1, 1, 1, 1}};
     float rgb[3];
     parts[0] = colours[id.x].x;
     tubes_mix(parts, rgb);
@@ -67,39 +63,18 @@ def c(path, rows, compiler="c"):
     return run_c(path, HOST, given, compiler).reshape(len(rows), -1)
 
 
-def glsl(path, parts, films):
+def glsl(path, films):
     """Return linear RGB and the fourth reflectance (n, 4) of films (n, 2) of one
     mixture, of a thickness and on a grey ground, by WebGL 2 in Chromium.
     """
-    need(CHROMIUM)
-    side = int(np.ceil(np.sqrt(len(films))))
-    pixels = np.zeros((side * side, 4), np.float32)
-    pixels[: len(films), 3] = films[:, 0]
-    pixels[: len(films), 2] = films[:, 1]
-    listed = ", ".join(str(float(part)) for part in parts)
-    code = FRAGMENT.format(code=path.read_text(), parts=listed)
-    data = {"code": code, "table": base64.b64encode(b"").decode()}
-    found = draw(path, pixels, data, "")
-    if found is None:
-        pytest.skip("the browser has no WebGL 2")
-    return found[: len(films)]
+    return shade(path, FRAGMENT, films[:, [0, 0, 1, 0]])
 
 
-def compile_hlsl(path, count):
+def compile_hlsl(path):
     """Compile a shader to SPIR-V."""
     need(GLSLANG)
-    listed = ", ".join(["1.0"] * count)
     main = path.with_name("main.hlsl")
-    main.write_text(PIXEL.format(code=path.read_text(), parts=listed))
+    main.write_text(PIXEL.format(code=path.read_text()))
     command = "glslangValidator -D -V -S comp -e main main.hlsl -o main.spv"
     output_of(*command.split(), cwd=path.parent)
     return path.with_name("main.spv")
-
-
-def compile_glsl(path):
-    """Compile a fragment shader."""
-    need(GLSLANG)
-    call = "float p[TUBES_PAINTS]; p[0] = 1.0; float c[3]; tubes_mix(p, c); o.r = c[0];"
-    text = f"#version 330\n{path.read_text()}out vec4 o;\nvoid main() {{ {call} }}\n"
-    path.with_name("a.frag").write_text(text)
-    output_of("glslangValidator", "a.frag", cwd=path.parent)

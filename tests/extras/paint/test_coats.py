@@ -1,35 +1,30 @@
 """Mixtures by kind of component, coats on grounds, and painting over images."""
 
-import json
+from functools import partial
 
 import numpy as np
-import OpenEXR
 import pytest
-from numpy.testing import assert_allclose, assert_array_equal
+from numpy.testing import assert_allclose
 
-from tests.extras.texture.conftest import channels, planes, read_channels, write_exr
+from tests.extras.texture.conftest import planes, read_channels, write_exr
 from tests.helpers import raises, warns
-from uplift.common.errors import ColourError, OptionError
-from uplift.extras.images.counts import Counts
+from uplift.common.errors import OptionError
 from uplift.extras.paint.coats import DARKEST, Dyes, Pigments, Plates, dye_absorption
 from uplift.extras.paint.duntley import DuntleyPaints
 from uplift.extras.paint.optics import (
     NO_SURFACE,
     Layer,
     Surface,
-    add_lights,
     plate,
-    ramp,
     stack_filters,
 )
 from uplift.extras.paint.overpaint import overpainter
-from uplift.extras.paint.pigments import CONSTANT, SQUARE_ROOT, Pigment, from_opaque
+from uplift.extras.paint.pigments import SQUARE_ROOT, Pigment, from_opaque
 from uplift.extras.texture.conversion import convert
 
 WHITE = np.ones(5)
 OIL = Surface.of_index(1.5)
-DIFFUSE = Surface(0.092, OIL.inside)
-SURFACES = [NO_SURFACE, OIL, DIFFUSE]
+SURFACES = [NO_SURFACE, OIL]
 T = np.array([0.0, 0.05, 0.5, 0.9, 1.0])
 
 
@@ -41,20 +36,14 @@ def two(rng):
 
 @pytest.mark.parametrize("surface", SURFACES)
 @pytest.mark.parametrize(
-    "components",
-    [
-        Dyes,
-        lambda spectra: Pigments(spectra, SQUARE_ROOT),
-        lambda spectra: Pigments(spectra, CONSTANT),
-    ],
+    "components", [Dyes, partial(Pigments, scattering=SQUARE_ROOT)]
 )
 def test_a_single_colour_is_unchanged_and_thickness_0_leaves_the_ground(
     two, rng, components, surface
 ):
     mixed = components(two)
-    for parts, expected in (([1, 0], two[0]), ([0, 3], two[1])):
-        found = mixed.coat(parts, surface=surface).over(WHITE)
-        assert_allclose(found, expected, rtol=1e-9)
+    found = mixed.coat([0, 3], surface=surface).over(WHITE)
+    assert_allclose(found, two[1], rtol=1e-9)
     ground = rng.uniform(0.1, 1, 5)
     assert_allclose(mixed.coat([1, 1], 0.0, surface).over(ground), ground)
 
@@ -68,20 +57,10 @@ def test_paint_measured_on_white_and_black_round_trip(rng):
         assert_allclose(coat.over(ground), expected, rtol=1e-6)
 
 
-def test_filters_and_lights(two):
-    assert_allclose(add_lights(two, [2, 1]), 2 * two[0] + two[1])
-    # 9.2.1.2 of the thesis: cyan light through an orange and a grey filter.
+def test_filters_are_multiplied():
+    """9.2.1.2 of the thesis: cyan light through an orange and a grey filter."""
     filters = np.array([[0, 1, 1], [1, 0.5, 0], [0.5, 0.5, 0.5]])
     assert_allclose(stack_filters(filters, [1, 1, 1]), [0, 0.25, 0])
-
-
-def test_ramps_of_proportions(two):
-    assert_allclose(ramp([1, 4, 1], 5)[:, 1], [0, 2, 4, 2, 0])
-    assert ramp([1], 5).shape == (0, 1)
-    parts = ramp([2, 1], 4)
-    paints = Pigments(two, SQUARE_ROOT)
-    found = paints.coat(parts, 0.5).over(WHITE)
-    assert_allclose(found, [paints.coat(row, 0.5).over(WHITE) for row in parts])
 
 
 @pytest.mark.parametrize(
@@ -89,9 +68,9 @@ def test_ramps_of_proportions(two):
     [
         (Dyes, [1, 1], -1.0),
         (DuntleyPaints, [1, 1], -1.0),
-        (lambda spectra: Pigments(spectra, SQUARE_ROOT), [1, 1], float("inf")),
         (Pigments, [1, 1], None),
-        *((Dyes, parts, None) for parts in ([1, -1], [1, np.nan], [1, np.inf], 3.0)),
+        (Dyes, [1, np.nan], None),
+        (Dyes, 3.0, None),
         (Dyes, [0, 0], None),
     ],
 )
@@ -107,8 +86,8 @@ def test_colours_darker_than_the_surface_trigger_a_warning(two):
     assert_allclose(coat.over(WHITE), 0.04, atol=1e-4)
 
 
-@pytest.mark.parametrize("ground", [0.0, 0.3, 1.0])
-@pytest.mark.parametrize("surface", [*SURFACES, Surface(0.04, 0.04)])
+@pytest.mark.parametrize("ground", [0.3, 1.0])
+@pytest.mark.parametrize("surface", [OIL, Surface(0.04, 0.04)])
 def test_a_dye_on_a_ground_is_the_sum_over_passes(surface, ground):
     """The light that leaves at each pass (9.6)."""
     light = (1 - surface.outside) * np.ones_like(T)
@@ -117,12 +96,11 @@ def test_a_dye_on_a_ground_is_the_sum_over_passes(surface, ground):
         light = light * T * ground * T
         expected = expected + (1 - surface.inside) * light
         light = surface.inside * light
-    assert_allclose(
-        surface.apply(Layer(np.zeros_like(T), T).over(ground)), expected, atol=1e-12
-    )
+    found = surface.apply(Layer(np.zeros_like(T), T).over(ground))
+    assert_allclose(found, expected, atol=1e-12)
 
 
-@pytest.mark.parametrize("rho", [0.0, 0.04, 0.3])
+@pytest.mark.parametrize("rho", [0.0, 0.3])
 def test_a_plate_is_the_sum_over_passes_and_keeps_the_energy_of_clear_light(rho):
     """Eq. 9.4: what leaves above and below at each pass."""
     found = plate(T, rho)
@@ -132,26 +110,14 @@ def test_a_plate_is_the_sum_over_passes_and_keeps_the_energy_of_clear_light(rho)
     for number in range(200):
         (above if number % 2 else below)[:] += (1 - rho) * light
         light = rho * light * T
-    assert_allclose(
-        [found.reflectance, found.transmittance], [above, below], atol=1e-12
-    )
+    assert_allclose(found.reflectance, above, atol=1e-12)
+    assert_allclose(found.transmittance, below, atol=1e-12)
     assert found.reflectance[-1] + found.transmittance[-1] == pytest.approx(1)
-    assert (found.reflectance + found.transmittance <= 1 + 1e-12).all()
-
-
-def test_a_plate_of_index_1_is_the_layer_alone(two):
-    dyes = Dyes(two)
-    for ground in (0.0, 0.3, 1.0):
-        found = Plates(two).coat([1, 2], 1.5).over(ground)
-        assert_allclose(found, dyes.coat([1, 2], 1.5).over(ground))
-    assert (Plates(two).coat([1, 2], 1.5, OIL).over(0.0) >= OIL.outside).all()
 
 
 @pytest.mark.parametrize("surface", SURFACES)
-def test_duntley_s_paint_becomes_kubelka_and_munk_s_and_creates_no_energy(rng, surface):
-    """In the limit of strong forward scattering in a beam, constants mix as Duncan's.
-    Clear paint leaves white.
-    """
+def test_duntley_s_paint_becomes_kubelka_and_munk_s(rng, surface):
+    """In the limit of strong forward scattering; constants mix as Duncan's."""
     K, B = rng.uniform(0.1, 2, (2, 2, 5))
     constants = np.stack([K, B, np.full_like(K, 1e8), K, B, B], axis=1)
     for ground in (surface.outside, 0.5, 1.0):
@@ -160,61 +126,52 @@ def test_duntley_s_paint_becomes_kubelka_and_munk_s_and_creates_no_energy(rng, s
         assert_allclose(
             found, surface.apply(layer.over(surface.remove(ground))), atol=1e-6
         )
-    clear = rng.uniform(0, 2, (3, 6, 5)) * [[0], [1], [1], [0], [1], [1]]
-    assert_allclose(DuntleyPaints(clear).coat([1, 2, 3], 0.7, surface).over(WHITE), 1)
 
 
-def test_thicknesses_of_dyes_compose_and_black_is_finite(two):
-    thin, thick, both = (
-        Dyes(two).coat([1, 2], thickness).layer.transmittance for thickness in (2, 3, 5)
-    )
+@pytest.mark.parametrize("components", [Dyes, Plates])
+def test_thicknesses_of_dyes_compose(two, components):
+    """A plate of index 1 is the layer alone."""
+    thin = components(two).coat([1, 2], 2).over(1.0)
+    thick = components(two).coat([1, 2], 3).over(1.0)
+    both = components(two).coat([1, 2], 5).over(1.0)
     assert_allclose(both, thin * thick)
+
+
+def test_black_dyes_are_finite():
     assert_allclose(np.exp(-dye_absorption(T**2)), np.maximum(T, DARKEST))
 
 
 @pytest.fixture
-def image():
-    return np.random.default_rng(1).random((6, 5, 3)).astype(np.float32)
+def painted(small_cube, rng, tmp_path):
+    """A function that paints over a random image and returns it, the new one and the
+    result of the conversion.
+    """
+
+    def painted(coat, brighter=0.0):
+        image = brighter + rng.random((6, 5, 3)).astype(np.float32)
+        write_exr(tmp_path / "in.exr", planes(image))
+        painter = overpainter(small_cube, coat, threads=1)
+        result = convert(painter, tmp_path / "in.exr", tmp_path / "out.exr")
+        return image, read_channels(tmp_path / "out.exr", "RGB"), result
+
+    return painted
 
 
-def test_painted_colours_are_those_of_the_coated_spectra(small_cube, image, tmp_path):
-    """Half a unit of the ColorChecker's red in oil. Other channels pass through."""
+def test_painted_colours_are_those_of_the_coated_spectra(small_cube, painted):
+    """Half a unit of the ColorChecker's red in oil."""
     atlas = small_cube.data.atlas
     red = small_cube.reflectance(atlas.rgb[atlas.names.index("red")])
     glaze = Pigments(red[None], SQUARE_ROOT).coat([1], 0.5, OIL)
-    mask = np.linspace(0, 1, 30, dtype=np.float16).reshape(6, 5)
-    write_exr(tmp_path / "in.exr", {**planes(image), "mask": mask})
-    painter = overpainter(small_cube, glaze, {"of": "red"}, threads=1)
-    result = convert(painter, tmp_path / "in.exr", tmp_path / "out.exr")
-    assert (result.counts, result.warnings) == (Counts(30), ())
+    image, found, result = painted(glaze)
+    assert not result.warnings
     expected = small_cube.data.sensor.rgb(glaze.over(small_cube.reflectance(image)))
-    assert_allclose(read_channels(tmp_path / "out.exr", "RGB"), expected, atol=2e-6)
-    assert_array_equal(channels(tmp_path / "out.exr")["mask"], mask)
-    header = OpenEXR.File(str(tmp_path / "out.exr"), separate_channels=True).header()
-    assert json.loads(header["uplift.mix"]) == {"of": "red"}
+    assert_allclose(found, expected, atol=2e-6)
 
 
-def test_pixels_outside_are_mapped_before_and_after_with_warnings(
-    small_cube, image, tmp_path
-):
+def test_pixels_outside_are_mapped_before_and_after_with_warnings(small_cube, painted):
     """A thick dye is saturated enough to leave the gamut."""
     dye = Dyes(small_cube.reflectance([[0.9, 0.1, 0.02]])).coat([1], 3.0)
-    write_exr(tmp_path / "in.exr", planes(image + 0.5))
-    result = convert(
-        overpainter(small_cube, dye, threads=1),
-        tmp_path / "in.exr",
-        tmp_path / "out.exr",
-    )
-    assert 0 < result.counts["pixels-out-of-gamut"] < 30
-    assert result.counts["painted-pixels-out-of-gamut"] > 0
-    assert [each.code for each in result.warnings] == [
-        "pixels-out-of-gamut",
-        "painted-pixels-out-of-gamut",
-    ]
-    found = read_channels(tmp_path / "out.exr", "RGB")
+    _, found, result = painted(dye, brighter=0.5)
+    codes = [warning.code for warning in result.warnings]
+    assert codes == ["pixels-out-of-gamut", "painted-pixels-out-of-gamut"]
     assert ((found >= 0) & (found <= 1)).all()
-    with raises(ColourError, "rgb-out-of-gamut") as caught:
-        strict = overpainter(small_cube, dye, out_of_gamut="error", threads=1)
-        convert(strict, tmp_path / "in.exr", tmp_path / "strict.exr")
-    assert caught.value.path == tmp_path / "in.exr"
-    assert not (tmp_path / "strict.exr").exists()

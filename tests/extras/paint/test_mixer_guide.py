@@ -3,7 +3,6 @@
 import re
 from pathlib import Path
 
-import numpy as np
 import pytest
 
 import uplift
@@ -59,13 +58,11 @@ def test_glsl(folder):
 def test_javascript(folder):
     need(NODE)
     (folder / "main.mjs").write_text(code("javascript"))
-    green, pink = output_of("node", folder / "main.mjs").splitlines()
+    green, _ = output_of("node", folder / "main.mjs").splitlines()
     assert as_hex(green) == GREEN
-    assert pink.startswith("[")
 
 
 def test_python():
     names = {}
     exec(compile(code("python"), "mixer.md", "exec"), names)
     assert hex_codes(names["green"][None]) == [GREEN]
-    assert np.ptp(names["brown"]) > 0

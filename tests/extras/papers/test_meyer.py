@@ -81,12 +81,11 @@ def test_given_orders_have_the_wavelengths_of_the_paper(setup_c):
 
 
 def test_impossible_orders_are_refused(setup_c):
-    with raises(OptionError, "undefined-rule"):
-        choose_orders(setup_c, (3, 3, 2))
+    for orders in ((3, 3, 2), (3, 11, 1)):
+        with raises(OptionError):
+            choose_orders(setup_c, orders)
     for count in (1, 3, 31):
         with raises(OptionError, "undefined-rule"):
             choose(setup_c, count=count, method="meyer")
-    with raises(OptionError):
-        choose_orders(setup_c, (3, 11, 1))
     with raises(UnknownNameError, "unknown-name"):
         choose_orders(setup_c, (3, 2, 1), "rgb")

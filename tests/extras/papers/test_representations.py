@@ -21,57 +21,33 @@ from uplift.extras.papers.representations.composite import (
     fourier_coefficients,
     split_spikes,
     sun_composite,
-    waves,
 )
 from uplift.extras.papers.representations.filters import Filter, resampling_matrix
 from uplift.extras.papers.representations.models import (
     hero_wavelengths,
-    linear_model,
-    principal_components,
-    trigonometric_moments,
 )
 from uplift.extras.papers.representations.registry import (
-    FACTORIES,
     all_representations,
     find_representation,
 )
 from uplift.extras.papers.representations.samples import (
-    gauss_samples,
     hat_functions,
-    point_samples,
-    sample_points,
-    wavelengths,
     xyz_weights,
 )
 from uplift.extras.scene.passes.representation import rgb_passes
-from uplift.lab.study.moments import Technique
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="module")
 def checker():
     return make_scene({"macbeth": read_atlas(MACBETH)})
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="module")
 def every(checker):
     """Every representation by name."""
     return {
         one.name: one for one in all_representations(checker.powers, checker.surfaces)
     }
-
-
-@pytest.fixture
-def light_powers(checker):
-    """Function of the name of a light that returns its powers (24, 401), one row per
-    patch.
-    """
-
-    def light_powers(name):
-        part = next(part for part in checker.sets if name in part.lights)
-        power = part.powers[part.lights.index(name)]
-        return np.tile(power, (len(checker.surfaces), 1))
-
-    return light_powers
 
 
 NAMES = [
@@ -82,6 +58,7 @@ EXACT = [name for name in NAMES if not name.startswith(("LM", "HW", "PF"))]
 """All but linear models of a scene, random hero wavelengths, and filters that count
 values past the ends as 0.
 """
+ACCURATE = ("PS32", "PF32", "RS32", "RE32", "GQ32", "TM17", "LM16")
 
 
 @pytest.mark.parametrize("name", EXACT)
@@ -95,25 +72,20 @@ def test_grey_under_constant_light_is_exact(every, name):
 
 @pytest.mark.parametrize("name", NAMES)
 def test_colour_is_linear_in_the_light_and_products_can_be_multiplied_again(
-    every, checker, light_powers, name
+    every, checker, name
 ):
     one = every[name]
-    surfaces = every[name].encode_surface(checker.surfaces)
-    products = [
-        one.multiply(one.encode_light(factor * light_powers("FL11")), surfaces)
-        for factor in (1, 2)
-    ]
-    assert_allclose(one.xyz(products[1]), 2 * one.xyz(products[0]), rtol=1e-9)
-    again = one.xyz(
-        one.multiply(
-            one.multiply(one.encode_light(light_powers("A")), surfaces), surfaces
-        )
-    )
+    surfaces = one.encode_surface(checker.surfaces)
+    smooth, spiky = (np.tile(part.powers[0], (24, 1)) for part in checker.sets)
+    once = one.multiply(one.encode_light(spiky), surfaces)
+    twice = one.multiply(one.encode_light(2 * spiky), surfaces)
+    assert_allclose(one.xyz(twice), 2 * one.xyz(once), rtol=1e-9)
+    lit = one.multiply(one.encode_light(smooth), surfaces)
+    again = one.xyz(one.multiply(lit, surfaces))
     assert np.isfinite(again).all()
-    if name in ("PS32", "PF32", "RS32", "RE32", "GQ32", "TM17", "LM16"):
-        assert_allclose(
-            again, (light_powers("A") * checker.surfaces**2) @ xyz_weights(), atol=0.01
-        )
+    if name in ACCURATE:
+        exact = (smooth * checker.surfaces**2) @ xyz_weights()
+        assert_allclose(again, exact, atol=0.01)
 
 
 @pytest.mark.parametrize(("count", "limit"), [(3, 6), (6, 1.5), (9, 0.5), (12, 0.3)])
@@ -134,34 +106,6 @@ PS16:box:3:1 PS16:cone:3 RP2 RP4 RP15"""
 def test_unknown_representations_raise(name):
     with raises(OptionError, "option"):
         find_representation(name)
-
-
-RANDOM = np.random.default_rng(5).random((3, 401))
-
-
-@pytest.mark.parametrize("count", [4, 9, 32])
-def test_point_samples_are_linear_interpolation_both_ways(count):
-    samples = point_samples(count)
-    places = np.linspace(380, 780, count)
-    assert sample_points(count)[[0, -1]].tolist() == [380, 780]
-    taken = samples.encode_light(RANDOM)
-    assert_allclose(
-        taken, [np.interp(places, wavelengths(), row) for row in RANDOM], rtol=1e-12
-    )
-    back = np.array([np.interp(wavelengths(), places, row) for row in taken])
-    assert_allclose(samples.xyz(taken), back @ xyz_weights(), rtol=1e-12)
-
-
-@pytest.mark.parametrize("count", [4, 8, 16])
-def test_quadrature_is_exact_for_polynomials(count):
-    x = (wavelengths() - 580) / 200
-    rule = gauss_samples(count)
-    for degree in range(count):
-        power = np.polynomial.chebyshev.chebval(x, np.eye(degree + 1)[-1])[None]
-        # Spectra are linear between dense samples, so the rule is only approximate.
-        assert_allclose(
-            rule.xyz(rule.encode_light(power)), power @ xyz_weights(), atol=1e-3
-        )
 
 
 SOME = [
@@ -197,7 +141,7 @@ def dense(table):
     return table @ hat_functions(observer.grid())
 
 
-@settings(max_examples=25)
+@settings(max_examples=15)
 @given(TABLES, st.sampled_from([0.1, 0.2, 0.3]))
 def test_smooth_part_is_the_largest_with_limited_gradient(table, threshold):
     found = split_spikes(dense(table), threshold)
@@ -216,28 +160,14 @@ def test_smooth_part_is_the_largest_with_limited_gradient(table, threshold):
 @pytest.mark.parametrize("count", [1, 5, 15])
 def test_fourier_coefficients_equal_equation_4_7(count):
     table = np.random.default_rng(6).random((2, 81))
-    phase = np.arange(1, 81) * 2 * np.pi / 80
     actual = fourier_coefficients(count).encode_light(dense(table))
     table[:, 80] = (table[:, 0] + table[:, 80]) / 2
-    assert_allclose(actual[:, 0], table[:, 1:].mean(axis=1))  # ã_0 / 2 of eq. 4.7
+    phase = np.arange(1, 81) * 2 * np.pi / 80
+    expected = [table[:, 1:].mean(axis=1)]  # ã_0 / 2 of eq. 4.7
     for order in range(1, count // 2 + 1):
-        for place, wave in ((2 * order - 1, np.cos), (2 * order, np.sin)):
-            assert_allclose(
-                actual[:, place],
-                (table[:, 1:] @ wave(order * phase)) * 2 / 80,
-                atol=1e-12,
-            )
-
-
-@pytest.mark.parametrize("count", [3, 7])
-def test_product_of_fourier_series_is_not_aliased(count):
-    one = fourier_coefficients(count)
-    rng = np.random.default_rng(7)
-    first, second = rng.random((2, 4, count))
-    whole = (first @ waves(count)) * (second @ waves(count))
-    table = np.concatenate([np.ones((1, 400)), waves(count)[1:, :400]])
-    kept = (whole[:, :400] @ table.T) / (table**2).sum(axis=1)
-    assert_allclose(one.multiply(first, second), kept, atol=1e-12)
+        for wave in (np.cos, np.sin):
+            expected.append((table[:, 1:] @ wave(order * phase)) * 2 / 80)
+    assert_allclose(actual, np.transpose(expected), atol=1e-12)
 
 
 @pytest.mark.parametrize("make", [sun_composite, enhanced_riemann])
@@ -256,41 +186,13 @@ def test_spikes_multiply_exactly_on_constant_spectra(make):
     assert one.storage(actual).tolist() == [7 + 4]
 
 
-def test_moments_equal_the_integrals(checker):
-    actual = trigonometric_moments(9).encode_surface(checker.surfaces)
-    exact = Technique(mirrored=True, warp="none").moments(
-        checker.surfaces, wavelengths(), 8
-    )
-    assert_allclose(actual, exact, atol=2e-5)
-
-
-def test_linear_model_of_all_components_is_exact(checker, light_powers):
-    power = checker.powers[:1]
-    surfaces = checker.surfaces[:5]
-    model = linear_model(6, power, surfaces)  # five products and the light
-    light = model.encode_light(np.tile(power, (5, 1)))
-    actual = model.xyz(model.multiply(light, model.encode_surface(surfaces)))
-    assert_allclose(actual, (power * surfaces) @ xyz_weights(), rtol=1e-6)
-    basis = principal_components(6, power, surfaces)
-    assert_allclose(basis.T @ basis, np.eye(6), atol=1e-12)
-
-
-@pytest.mark.parametrize("family", FACTORIES)
-def test_a_name_finds_the_representation_of_this_name(family):
-    _, sizes = FACTORIES[family]
-    names = [f"{family}{size}" for size in sizes]
-    assert [find_representation(name).name for name in names] == names
-
-
 def test_hero_wavelengths_are_unbiased_and_variance_falls_with_paths(checker):
     power = checker.powers[:1] * checker.surfaces[:1]
     spread = []
     for count in (4, 32):
         hero = hero_wavelengths(count)
         actual = hero.xyz(hero.encode_light(np.tile(power, (4000, 1))))
-        error = actual.std(axis=0) / np.sqrt(len(actual))
-        assert (
-            np.abs(actual.mean(axis=0) - power @ xyz_weights()) < 4 * error + 1e-5
-        ).all()
         spread.append(actual.std(axis=0).max())
+        error = actual.mean(axis=0) - power @ xyz_weights()
+        assert np.abs(error).max() < 4 * spread[-1] / 4000**0.5
     assert spread[1] < spread[0] / 8**0.5

@@ -25,36 +25,29 @@ def test_page_fits_and_is_accessible(html, tmp_path):
     check_page(html, tmp_path)
 
 
-def test_page_is_well_formed_and_complete(html, judged):
+def test_page_is_complete_and_sorted_worst_first(html, judged):
     read = Page(html)
-    for heading in (
-        "Build",
-        "Failures",
-        "Distributions",
-        "Standard error",
-        "Crowding",
-        "Entries",
-    ):
-        assert heading in read.text
-    for name in judged.entries.names:
-        assert name in read.text
     assert "No failures: all 512 nodes" in read.text
     assert judged.values["build"]["digest"] in read.text
-    assert "Left out" not in read.text
     assert not re.search(r"\b(nan|inf|None(?!\.))\b", read.text)
-
-
-def test_table_and_spectra_are_sorted_worst_first(html, judged):
-    rows = Page(html).table("entry", "worst")
-    assert [row[0].parts[0] for row in rows] == list(judged.entries.names)
-    assert [row[1].value for row in rows] == pytest.approx(
-        judged.entries.answers.worst.tolist()
-    )
+    names = judged.entries.names.tolist()
+    rows = read.table("entry", "worst")
+    assert [row[0].parts[0] for row in rows] == names
+    worst = judged.entries.answers.worst
+    assert [row[1].value for row in rows] == pytest.approx(worst.tolist())
     drawn = re.findall(r'<figcaption><b title="[^"]*">([^<]*)</b>', html)
-    assert drawn == judged.entries.names[:3].tolist()
+    assert drawn == names[:3]
+    values = json.loads(json.dumps(judged.values, allow_nan=False))
+    assert [entry["name"] for entry in values["entries"]] == names
 
 
-def test_names_are_escaped(small_cube, hostile):
+@pytest.fixture
+def without_charts(monkeypatch):
+    """They take most of the time of a page."""
+    monkeypatch.setattr(page, "histogram_chart", lambda *_, **__: "")
+
+
+def test_names_are_escaped(small_cube, hostile, without_charts):
     found = assess(small_cube, HOSTILE, 1, hostile, ("D65",))
     assert found.entries.names.tolist() == [HOSTILE]
     html = render_report(found, worst=24)
@@ -63,15 +56,6 @@ def test_names_are_escaped(small_cube, hostile):
     assert read.tags.count("script") == 1  # the page's own
     assert HOSTILE in read.text
     assert "laser" + HOSTILE in read.text
-    assert "which the cube was not built from" in read.text
-    table = read.text.split("Table of entries")[1].split("Crowding")[0]
-    assert "lattice alone" not in table
-
-
-@pytest.fixture
-def without_charts(monkeypatch):
-    """They take most of the time of a page."""
-    monkeypatch.setattr(page, "histogram_chart", lambda *_, **__: "")
 
 
 def test_points_over_the_threshold_are_listed(spoilt, macbeth, without_charts):
@@ -86,23 +70,16 @@ def test_lost_entries_are_named(lossy_cube, without_charts):
     found = assess(lossy_cube, "lossy.uplift", 1, None, ("D65",))
     text = Page(render_report(found, worst=0)).text
     assert "Lost, as an earlier entry has the same colour: über (that of grey)." in text
-    values = json.loads(json.dumps(found.values, allow_nan=False))["crowding"]
-    assert values["lost"] == [{"name": "über", "same_colour": "grey"}]
-    assert {entry["name"]: entry["reach"] for entry in values["entries"]} == {
-        "grey": 0.5,
-        "über": 0,
-    }
+    lost = found.values["crowding"]["lost"]
+    assert lost == [{"name": "über", "same_colour": "grey"}]
 
 
 def test_predicted_and_actual_errors_are_shown(small_cube, without_charts):
-    other = read_atlas("cie2017")
+    other = read_atlas("cie2017")[:30]
     found = assess(small_cube, "small.uplift", 1, other, ("D65", "FL11"))
     read = Page(render_report(found, worst=0))
-    values = found.values
-    errors = values["standard_error"]
-    assert errors["calibration"].keys() == errors["calibrations"]["FL11"].keys()
     rows = read.table("entry", "worst", "D65", "FL11", "rms", "predicted", "actual")
-    for row, entry in zip(rows, values["entries"], strict=True):
+    for row, entry in zip(rows, found.values["entries"], strict=True):
         assert row[-2].value == pytest.approx(entry["standard_error"])
         assert row[-1].value == pytest.approx(entry["delta_e_2000_reference"])
 
@@ -117,36 +94,16 @@ def test_histogram_counts_every_value():
         assert edges[-1] >= 5
 
 
-def test_json_holds_the_numbers_of_the_assessment(judged):
-    values = json.loads(json.dumps(judged.values, allow_nan=False))
-    entries = judged.entries
-    names = [entry["name"] for entry in values["entries"]]
-    assert names == entries.names.tolist()
-    first = values["entries"][0]
-    assert [*first["delta_e_2000"].values()] == entries.answers.delta_e[0].tolist()
-    lattice = first["delta_e_2000_lattice"]
-    assert [*lattice.values()] == entries.lattice.delta_e[0].tolist()
-    assert first["srgb"]["A"]["answered"].startswith("#")
-    assert first["reach"] == entries.half_width[0]
-    assert first["standard_error"] == entries.predicted[0]
-
-
-def test_entries_outside_the_space_are_among_the_entries(
-    cyan_cube, macbeth, without_charts
-):
-    found = assess(cyan_cube, "cube.uplift", 1, macbeth, ("D65", "A"))
-    assert len(found.entries.names) == 24
-    assert found.values["atlas"]["outside"] == []
-    assert found.values["failures"]["left_out"] == []
-    (facts,) = [entry for entry in found.values["entries"] if entry["name"] == "cyan"]
+def test_entries_outside_the_space_are_among_the_entries(judged, html):
+    values = judged.values
+    assert len(values["entries"]) == 24
+    assert values["atlas"]["outside"] == values["failures"]["left_out"] == []
+    (facts,) = [entry for entry in values["entries"] if entry["name"] == "cyan"]
     assert facts["delta_e_2000"]["D65"] < 1e-6
-    assert facts["delta_e_2000"]["A"] == pytest.approx(
-        cyan_cube.data.atlas.outside.error[0], abs=1e-4
-    )
+    error = judged.data.atlas.outside.error[0]
+    assert facts["delta_e_2000"]["A"] == pytest.approx(error, abs=1e-4)
     assert facts["delta_e_2000_lattice"]["A"] > 1
     assert 0 < facts["reach"] < 1
-    close = [entry["name"] for entry in found.values["crowding"]["entries"]]
+    close = [entry["name"] for entry in values["crowding"]["entries"]]
     assert "cyan" not in close
-    read = Page(render_report(found, worst=24))
-    assert "Outside sRGB, and so queried as XYZ" in read.text
-    assert not re.search(r"\b(nan|inf)\b", read.text)
+    assert "Outside sRGB, and so queried as XYZ" in Page(html).text

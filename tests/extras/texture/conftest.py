@@ -9,6 +9,7 @@ import OpenImageIO
 import pytest
 
 from uplift.extras import texture
+from uplift.models.model import evaluate
 
 PHOTO = Path(matplotlib.get_data_path()) / "sample_data" / "grace_hopper.jpg"
 WAVELENGTHS = (400.0, 430.0, 460.0, 500.0, 540.0, 580.0, 620.0, 660.0, 700.0)
@@ -97,3 +98,14 @@ def to_texture(spectral, tmp_path):
 def rgb_of(conversion):
     """Read RGB (h, w, 3) of a texture."""
     return read_channels(conversion.target, "RGB")
+
+
+def spectra_by(numbers, encoding, cube):
+    """Reflectance (..., N) at the wavelengths of the cube by the numbers of pixels."""
+    model = cube.data.model
+    if isinstance(encoding, texture.Spectrum):
+        return numbers
+    if isinstance(encoding, texture.Moments):
+        numbers = model.from_storage(numbers.astype(float))
+    spectra = evaluate(model, numbers.reshape(-1, model.count), cube.wavelengths)
+    return spectra.reshape(*numbers.shape[:-1], -1)

@@ -6,6 +6,7 @@ import struct
 import zlib
 
 import numpy as np
+from PIL.TiffImagePlugin import ImageFileDirectory_v2
 
 SIGNATURE = b"\x89PNG\r\n\x1a\n"
 COLOUR_TYPES = {1: 0, 2: 4, 3: 2, 4: 6}
@@ -69,8 +70,6 @@ def png_bytes(codes, *chunks, after=b""):
     return SIGNATURE + b"".join(parts)
 
 
-TIFF_FORMATS = {3: "H", 4: "I", 5: "II", 11: "f"}
-"""struct formats of the types of numbers."""
 EXIF = 0x8769
 INTEROPERABILITY = 0xA005
 
@@ -79,16 +78,16 @@ def tiff_bytes(codes, tags, order="<", exif=None, interoperability=None):
     """A TIFF file of codes (h, w, channels), or directories alone without; ``tags`` are
     type and values by number.
     """
+    mark = b"II" if order == "<" else b"MM"
+    body = mark + struct.pack(order + "HI", 42, 0)
     tags = dict(tags)
-    body = bytearray(
-        (b"II" if order == "<" else b"MM") + struct.pack(order + "HI", 42, 0)
-    )
+    pixels = b""
     if interoperability is not None:
-        exif = (exif or {}) | {
-            INTEROPERABILITY: (4, [_directory(body, interoperability, order)])
-        }
+        body, place = _with_directory(body, interoperability, mark)
+        exif = (exif or {}) | {INTEROPERABILITY: (4, [place])}
     if exif is not None:
-        tags[EXIF] = (4, [_directory(body, exif, order)])
+        body, place = _with_directory(body, exif, mark)
+        tags[EXIF] = (4, [place])
     if codes is not None:
         height, width, channels = codes.shape
         pixels = codes.astype(codes.dtype.newbyteorder(order)).tobytes()
@@ -96,56 +95,26 @@ def tiff_bytes(codes, tags, order="<", exif=None, interoperability=None):
             256: (4, [width]),
             257: (4, [height]),
             258: (3, [8 * codes.dtype.itemsize] * channels),
-        }
-        tags |= {
             259: (3, [1]),
             262: (3, [2 if channels > 2 else 1]),
+            273: (4, [0]),  # from the end of the directory
             277: (3, [channels]),
             278: (4, [height]),
+            279: (4, [len(pixels)]),
+            339: (3, [3 if codes.dtype.kind == "f" else 1] * channels),
         }
-        tags |= {273: (4, [len(body)]), 279: (4, [len(pixels)])}
-        tags |= {339: (3, [3 if codes.dtype.kind == "f" else 1] * channels)}
-        body += pixels
-    first = _directory(body, tags, order)
-    body[4:8] = struct.pack(order + "I", first)
-    return bytes(body)
+    body, place = _with_directory(body, tags, mark)
+    return body[:4] + struct.pack(order + "I", place) + body[8:] + pixels
 
 
-def _directory(body, tags, order):
-    """Append the values and the directory of tags, and return its offset."""
-    entries = []
-    for tag, (kind, values) in sorted(tags.items()):
-        data, count = _packed(kind, values, order)
-        if len(data) > 4:
-            body += b"\0" * (len(body) % 2)
-            offset = len(body)
-            body += data
-            data = struct.pack(order + "I", offset)
-        entries.append(
-            struct.pack(order + "HHI", tag, kind, count) + data.ljust(4, b"\0")
-        )
+def _with_directory(body, tags, mark):
+    """Append the directory of tags, and return its offset, too."""
+    directory = ImageFileDirectory_v2(prefix=mark)
+    for tag, (kind, values) in tags.items():
+        directory.tagtype[tag] = kind
+        directory[tag] = values.rstrip(b"\0") if kind == 2 else values
     body += b"\0" * (len(body) % 2)
-    offset = len(body)
-    body += struct.pack(order + "H", len(entries)) + b"".join(entries) + b"\0" * 4
-    return offset
-
-
-def _packed(kind, values, order):
-    """Bytes and count of values: bytes, a text, or numbers, of which rationals have the
-    denominator 1e6.
-    """
-    if isinstance(values, bytes):
-        return values, len(values)
-    form = TIFF_FORMATS[kind] * len(values)
-    if kind == 5:
-        values = (
-            np.stack(
-                [np.rint(np.multiply(values, 1e6)), np.full(len(values), 1e6)], axis=-1
-            )
-            .astype(int)
-            .ravel()
-        )
-    return struct.pack(order + form, *values), len(form) // len(TIFF_FORMATS[kind])
+    return body + directory.tobytes(len(body)), len(body)
 
 
 def hdr_bytes(mantissas, exponent, header=""):

@@ -12,7 +12,6 @@ from tests.conftest import ATLASES
 from tests.helpers import raises
 from uplift.atlas.resampling import resample
 from uplift.colorimetry import observer
-from uplift.colorimetry.delta_e import delta_e_spectra
 from uplift.colorimetry.sensor import in_unit_cube
 from uplift.common.errors import OptionError, TextureError
 from uplift.extras import texture
@@ -22,28 +21,32 @@ from uplift.extras.photographs.fit import estimate_noise, shift
 from uplift.extras.photographs.photograph import Noise, photograph
 from uplift.extras.texture.encodings import spectral_channels
 from uplift.extras.texture.sequence import Job, TextureSettings, is_complete, run
-from uplift.lookup.node_table import prepare_products
 
-from .conftest import channels, planes, read_channels, write_exr, write_image
+from .conftest import (
+    channels,
+    planes,
+    read_channels,
+    spectra_by,
+    write_exr,
+    write_image,
+)
+from .image_bytes import BT2020
 
-SIZE = 96
+SIZE = 64
 PATCH = 8
 RANDOM = np.random.default_rng(11)
-WAVELENGTHS = tuple(observer.grid().tolist())
+SPECTRUM = texture.Spectrum()
 
 
 @pytest.fixture(scope="module")
 def scene(plain_cube):
-    """Reflectances (SIZE, SIZE, 81) of patches of measured materials, shaded."""
+    """Reflectances (SIZE, SIZE, 81) of patches of measured materials."""
     sensor = plain_cube.data.sensor
     atlas = uplift.read_atlas(ATLASES / "pmc.txt")
     spectra = resample(atlas, sensor.wavelengths).values
     spectra = spectra[in_unit_cube(sensor.rgb(spectra))]
-    count = SIZE // PATCH
-    patches = spectra[RANDOM.integers(len(spectra), size=(count, count))]
-    shade = 0.6 + 0.4 * RANDOM.random((count * 2, count * 2, 1))
-    large = np.kron(patches, np.ones((PATCH, PATCH, 1)))
-    return large * np.kron(shade, np.ones((PATCH // 2, PATCH // 2, 1)))
+    rows = RANDOM.integers(len(spectra), size=(SIZE // PATCH, SIZE // PATCH))
+    return np.kron(spectra[rows], np.ones((PATCH, PATCH, 1)))
 
 
 def photograph_of(scene, sensor, *, exposure=1.0, noise=0.0):
@@ -63,13 +66,16 @@ def convert(plain_cube, day, tmp_path):
     linear RGB.
     """
 
-    def convert(other, further=None, kind=None, first=day):
+    def convert(
+        other, further=None, kind=SPECTRUM, first=day, cubes=(plain_cube,), **options
+    ):
         if not isinstance(other, Path):
             other = write_exr(tmp_path / "a.exr", planes(other.astype(np.float32)))
-        kind = kind or texture.Spectrum()
-        uplifter = texture.prepare(plain_cube, kind, depth="float", threads=1)
+        uplifters = [
+            texture.prepare(cube, kind, depth="float", threads=1) for cube in cubes
+        ]
         made = texture.prepare_several_lights(
-            [uplifter], kind, further or under("A"), threads=1
+            uplifters, kind, further or under("A"), threads=1, **options
         )
         target = tmp_path / "two.exr"
         return texture.convert(made, first, target, also=[other], force=True)
@@ -83,77 +89,59 @@ def tungsten(scene):
     return photograph_of(scene, observer.sensor("sRGB", "A"))
 
 
-def mean_error(name, spectra, scene):
-    """Mean ΔE00 under a light."""
-    pair = (spectra.reshape(-1, 81), scene.reshape(-1, 81))
-    return delta_e_spectra(observer.light(name), *pair).mean()
-
-
 def under(light, **settings):
-    return texture.FurtherPictures((texture.FurtherPicture(light),), **settings)
+    picture = {
+        name: settings.pop(name) for name in ("camera", "exposure") & settings.keys()
+    }
+    pictures = (texture.FurtherPicture(light, **picture),)
+    return texture.FurtherPictures(pictures, **settings)
 
 
-def spectra_of(path):
-    return read_channels(path, spectral_channels("T", np.array(WAVELENGTHS)))
+def spectra_of(conversion):
+    names = spectral_channels("T", observer.grid())
+    return read_channels(conversion.target, names)
 
 
-def test_a_relit_picture_gives_the_spectra_back(plain_cube, day, convert, tmp_path):
-    """Of the cube's own answers, under A, at another exposure that is not stated."""
+def test_exposure_balance_and_shift_are_estimated(scene, convert):
     lit = observer.sensor("sRGB", "A")
-    relit = prepare_products(plain_cube.data, plain_cube.wavelengths, lit.matrix, 1)
-    conversion = convert(relit(read_channels(day, "RGB")))
-    assert "exposure × 1 " in conversion.facts[0]
-    plain = texture.prepare(plain_cube, texture.Spectrum(), depth="float", threads=1)
-    one = texture.convert(plain, day, tmp_path / "one.exr").target
-    assert_allclose(spectra_of(conversion.target), spectra_of(one), atol=2e-3)
-    assert not channels(conversion.target)["contradiction"].any()
+    facts = convert(photograph_of(scene, lit, exposure=1.3, noise=0.005)).facts
+    assert float(facts[0].split()[3]) == pytest.approx(1.3, rel=0.01)
+    assert "shift 0.0" in facts[0]
+    assert_allclose(np.array(facts[1].split()[7:10], dtype=float), 1, atol=0.05)
 
 
-@pytest.mark.parametrize("noise", [0.0, 0.005])
-def test_textures_come_nearer_to_the_materials(scene, plain_cube, convert, noise):
-    lit = observer.sensor("sRGB", "A")
-    conversion = convert(photograph_of(scene, lit, exposure=1.3, noise=noise))
-    factor = float(conversion.facts[0].split()[3])
-    assert factor == pytest.approx(1.3, rel=0.01)
-    assert "shift 0.0" in conversion.facts[0]
-    ratio = np.array(conversion.facts[1].split()[7:10], dtype=float)
-    assert_allclose(ratio, 1, atol=0.05)
-    two = spectra_of(conversion.target)
-    one = plain_cube.reflectance(np.clip(scene @ plain_cube.data.sensor.matrix.T, 0, 1))
-    for name in ("A", "FL11", "HP1"):
-        assert mean_error(name, two, scene) < mean_error(name, one, scene), name
-
-
-def test_texture_and_python_agree(plain_cube, day, convert, tungsten):
+@pytest.mark.parametrize(
+    ("light", "camera", "header"),
+    [
+        ("A", None, {}),
+        ("D65", "Nikon 5100 (NPL)", {}),
+        ("D65", "Nikon 5100 (NPL)", {"chromaticities": BT2020}),  # they have none
+    ],
+)
+def test_texture_and_python_agree(
+    light, camera, header, scene, plain_cube, day, convert, tmp_path
+):
     noise = (0.002, 0.0002)
-    further = texture.FurtherPictures(
-        (texture.FurtherPicture("A", exposure=1.0),), noise=noise
-    )
-    conversion = convert(tungsten, further)
-    prepared = prepare(plain_cube, [photograph(plain_cube.data.sensor, "A")], noise)
-    expected = prepared.reflectance(read_channels(day, "RGB"), tungsten.astype(float))
-    assert_allclose(spectra_of(conversion.target), expected, atol=1e-4)
+    lit = photograph(plain_cube.data.sensor, light, camera)
+    rgb = (scene @ lit.matrix.T).astype(np.float32)
+    other = write_exr(tmp_path / "other.exr", planes(rgb), **header)
+    further = under(light, camera=camera, exposure=1.0, noise=noise)
+    found = spectra_of(convert(other, further))
+    prepared = prepare(plain_cube, [lit], noise)
+    expected = prepared.reflectance(read_channels(day, "RGB"), rgb.astype(float))
+    assert_allclose(found, expected, atol=1e-4)
 
 
 @pytest.mark.parametrize("kind", [texture.Moments(), texture.Multipliers()])
-def test_coefficients_have_the_exact_colours(
-    scene, plain_cube, day, convert, tungsten, kind
-):
-    target = convert(tungsten, kind=kind).target
-    model = plain_cube.data.model
+def test_coefficients_have_the_exact_colours(plain_cube, day, convert, tungsten, kind):
     names = texture.prepare(plain_cube, kind).channels
-    numbers = read_channels(target, names).reshape(-1, model.count)
-    if isinstance(kind, texture.Moments):
-        numbers = model.from_storage(numbers)
-    spectra = uplift.models.evaluate(model, numbers, plain_cube.wavelengths)
-    sensor = plain_cube.data.sensor
-    rgb = read_channels(day, "RGB").reshape(-1, 3)
-    assert_allclose(sensor.rgb(spectra), rgb, atol=2e-3)
-    lit = observer.sensor("sRGB", "A")
-    others = scene.reshape(-1, 81) @ lit.matrix.T
-    off = np.abs(spectra @ lit.matrix.T - others).mean()
-    plain = plain_cube.reflectance(rgb) @ lit.matrix.T
-    assert off < np.abs(plain - others).mean()
+    numbers = read_channels(convert(tungsten, kind=kind).target, names)
+    spectra = spectra_by(numbers, kind, plain_cube)
+    rgb = read_channels(day, "RGB")
+    assert_allclose(plain_cube.data.sensor.rgb(spectra), rgb, atol=2e-3)
+    lit = observer.sensor("sRGB", "A").matrix.T
+    plain = plain_cube.reflectance(rgb) @ lit
+    assert np.abs(spectra @ lit - tungsten).mean() < np.abs(plain - tungsten).mean()
 
 
 def test_a_wrong_balance_is_doubted_by_greys(scene, plain_cube, convert):
@@ -163,67 +151,33 @@ def test_a_wrong_balance_is_doubted_by_greys(scene, plain_cube, convert):
         assert ("check the balance" in facts[1]) == is_doubted
 
 
-def test_raw_values_of_a_camera_are_in_no_space(scene, plain_cube, convert, tmp_path):
-    """Of a camera under the light of the cube, in files that state spaces or none."""
-    camera = "Nikon 5100 (NPL)"
-    raw = photograph(plain_cube.data.sensor, "D65", camera).matrix
-    values = planes((scene @ raw.T).astype(np.float32))
-    wide = (0.708, 0.292, 0.17, 0.797, 0.131, 0.046, 0.3127, 0.329)
-    picture = texture.FurtherPicture("D65", camera=camera, exposure=1.0)
-    further = texture.FurtherPictures((picture,), noise=(0.001, 0.0))
-    answers = []
-    for header in ({}, {"chromaticities": wide}):
-        path = write_exr(tmp_path / "a.exr", values, **header)
-        answers.append(spectra_of(convert(path, further).target))
-    assert_array_equal(*answers)
-    plain = plain_cube.reflectance(
-        np.clip(scene @ plain_cube.data.sensor.matrix.T, 0, 1)
-    )
-    assert mean_error("HP1", answers[0], scene) < mean_error("HP1", plain, scene)
-
-
-def test_masks_mix_cubes(tungsten, plain_cube, small_cube, day, tmp_path):
-    write_exr(tmp_path / "a.exr", planes(tungsten))
-    mask = np.zeros((SIZE, SIZE, 1), dtype=np.uint8)
-    mask[:, SIZE // 2 :] = 1
-    write_image(tmp_path / "mask.png", mask)
-    kind = texture.Spectrum()
-    parts = {}
-    for name, cubes, options in (
-        ("mixed", [plain_cube, small_cube], {"mask": tmp_path / "mask.png"}),
-        ("plain", [plain_cube], {}),
-        ("small", [small_cube], {}),
-    ):
-        uplifters = [
-            texture.prepare(cube, kind, depth="float", threads=1) for cube in cubes
-        ]
-        further = under("A", noise=(0.001, 0.0))
-        made = texture.prepare_several_lights(
-            uplifters, kind, further, threads=1, **options
-        )
-        target = tmp_path / f"{name}.exr"
-        texture.convert(made, day, target, also=[tmp_path / "a.exr"])
-        parts[name] = spectra_of(tmp_path / f"{name}.exr")
+def test_masks_mix_cubes(tungsten, plain_cube, small_cube, convert, tmp_path):
     half = SIZE // 2
-    assert_allclose(parts["mixed"][:, :half], parts["plain"][:, :half], atol=1e-6)
-    assert_allclose(parts["mixed"][:, half:], parts["small"][:, half:], atol=2e-3)
+    mask = np.zeros((SIZE, SIZE, 1), dtype=np.uint8)
+    mask[:, half:] = 1
+    path = write_image(tmp_path / "mask.png", mask)
+    further = under("A", noise=(0.001, 0.0))
+    both = (plain_cube, small_cube)
+    mixed = spectra_of(convert(tungsten, further, cubes=both, mask=path))
+    for cube, part in zip(both, (np.s_[:, :half], np.s_[:, half:]), strict=True):
+        alone = spectra_of(convert(tungsten, further, cubes=(cube,)))
+        assert_allclose(mixed[part], alone[part], atol=2e-3)
 
 
 def test_clipped_and_black_pixels_are_answered_by_the_first(
     scene, plain_cube, tungsten, convert, tmp_path
 ):
-    sensor = plain_cube.data.sensor
-    codes = np.rint(255 * np.clip(scene @ sensor.matrix.T, 0, 1) ** (1 / 2.2))
-    first = write_image(tmp_path / "day.png", codes.astype(np.uint8))
+    rgb = np.clip(scene @ plain_cube.data.sensor.matrix.T, 0, 1)
+    codes = np.rint(255 * rgb ** (1 / 2.2)).astype(np.uint8)
+    first = write_image(tmp_path / "day.png", codes)
     lit = np.rint(255 * np.clip(tungsten, 0, 1))
     lit[:10] = 255
     lit[10:20] = 0
     other = write_image(tmp_path / "a.png", lit.astype(np.uint8))
-    further = texture.FurtherPictures((texture.FurtherPicture("A", exposure=1.0),))
-    target = convert(other, further, first=first).target
-    expected = plain_cube.reflectance(read_channels(target, "RGB")[:20])
-    assert_allclose(spectra_of(target)[:20], expected, atol=1e-3)
-    assert not channels(target)["contradiction"][:20].any()
+    conversion = convert(other, under("A", exposure=1.0), first=first)
+    expected = plain_cube.reflectance(read_channels(conversion.target, "RGB")[:20])
+    assert_allclose(spectra_of(conversion)[:20], expected, atol=1e-3)
+    assert not channels(conversion.target)["contradiction"][:20].any()
 
 
 def test_pictures_that_contradict_each_other_are_counted(convert, tmp_path):
@@ -231,13 +185,11 @@ def test_pictures_that_contradict_each_other_are_counted(convert, tmp_path):
     other = grey.copy()
     other[4:8, 4:8] = (0.9, 0.02, 0.02)
     first = write_exr(tmp_path / "grey.exr", planes(grey))
-    further = texture.FurtherPictures((texture.FurtherPicture("A", exposure=1.0),))
-    conversion = convert(other, further, first=first)
+    conversion = convert(other, under("A", exposure=1.0), first=first)
     assert conversion.counts["photographs-contradict"] == 16
     assert "photographs-contradict" in [note.code for note in conversion.warnings]
     flags = channels(conversion.target)["contradiction"]
-    assert flags.sum() == 16
-    assert flags[4:8, 4:8].all()
+    assert_array_equal(flags, other[..., 0] == np.float32(0.9))
 
 
 def test_shifted_pictures_are_refused_with_the_shift(convert, tungsten, tmp_path):
@@ -248,49 +200,35 @@ def test_shifted_pictures_are_refused_with_the_shift(convert, tungsten, tmp_path
     assert not (tmp_path / "two.exr").exists()
 
 
-@pytest.mark.parametrize("place", [(0.0, 0.0), (2.0, -3.0), (0.5, 0.25)])
-def test_shifts_are_measured_below_a_pixel(place):
-    detail = RANDOM.standard_normal((64, 64))
-    spectrum = np.fft.fft2(detail) * np.exp(-8 * _frequencies(64, 64))
-    down, right = place
+def test_shifts_are_measured_below_a_pixel():
     y, x = np.fft.fftfreq(64)[:, None], np.fft.fftfreq(64)
-    moved = np.fft.ifft2(spectrum * np.exp(-2j * np.pi * (y * down + x * right))).real
-    first = np.fft.ifft2(spectrum).real
-    assert_allclose(shift(first + 10, moved + 10), place, atol=0.3)
+    detail = np.fft.fft2(RANDOM.standard_normal((64, 64))) * np.exp(-8 * np.hypot(y, x))
+    waves = np.exp(-2j * np.pi * (0.5 * y + 0.25 * x))
+    first, moved = np.fft.ifft2([detail, detail * waves]).real
+    assert_allclose(shift(first + 10, moved + 10), (0.5, 0.25), atol=0.3)
     assert shift(np.ones((64, 64)), moved) is None
 
 
-def _frequencies(height, width):
-    return np.hypot(np.fft.fftfreq(height)[:, None], np.fft.fftfreq(width))
-
-
-@pytest.mark.parametrize(("share", "floor"), [(0.01, 0.0), (0.0, 0.003), (0.01, 0.002)])
-def test_noise_is_estimated_from_flat_areas(share, floor):
+def test_noise_is_estimated_from_flat_areas():
     levels = np.repeat(np.linspace(0.02, 0.8, 24), 16)
     band = np.tile(levels[:, None], (24, 1, 3))
-    band = band + RANDOM.standard_normal(band.shape) * np.sqrt(
-        (share * band) ** 2 + floor**2
-    )
+    deviation = np.hypot(0.01 * band, 0.002)
+    band = band + RANDOM.standard_normal(band.shape) * deviation
     noise = estimate_noise([band] * 4, 0)
     for level in (0.05, 0.7):
-        expected = np.hypot(share * level, floor)
-        assert np.sqrt(noise.variance(np.array(level))) == pytest.approx(
-            expected, rel=0.35
-        )
+        expected = np.hypot(0.01 * level, 0.002)
+        assert np.sqrt(noise.variance(level)) == pytest.approx(expected, rel=0.35)
     assert estimate_noise([np.full((16, 16, 3), 0.5)], 255).share == 1 / 255
     assert estimate_noise([], 0) == Noise()
-    assert estimate_noise([band[:8, :8]], 0).variance(np.array(0.5)) >= 0
+    assert estimate_noise([band[:8, :8]], 0).variance(0.5) >= 0  # a block, many levels
 
 
 def test_sequences_resume_and_differ_by_their_photographs(
     tungsten, day, tmp_path, repository
 ):
     picture = write_exr(tmp_path / "a.exr", planes(tungsten))
-    settings = TextureSettings(
-        cubes=(str(repository / "cubes" / "moments-8.uplift"),),
-        also=under("A"),
-        threads=1,
-    )
+    cube = str(repository / "cubes" / "moments-8.uplift")
+    settings = TextureSettings(cubes=(cube,), also=under("A"), threads=1)
     job = Job(settings, day, tmp_path / "two.exr", also=(picture,))
     assert run(job).facts
     assert is_complete(replace(job, resume=True))
@@ -298,20 +236,43 @@ def test_sequences_resume_and_differ_by_their_photographs(
     assert not is_complete(replace(job, resume=True, force=True))
 
 
-def test_bad_input(convert, tungsten, tmp_path):
+CORNERS = (6.0, 5.0, 60.0, 8.0, 57.0, 47.0, 4.0, 44.0)
+TWICE = texture.FurtherPictures((texture.FurtherPicture("A"),) * 2)
+FAR = (0.0, 0.0, 900.0, 0.0, 900.0, 900.0, 0.0, 900.0)
+ON_A_LINE = (0.0, 0.0, 1.0, 1.0, 2.0, 2.0, 3.0, 3.0)
+CROSSED = (*CORNERS[2:4], *CORNERS[:2], *CORNERS[4:])
+
+
+def by_chart(corners, *atlas):
+    """Settings of a picture under A that is calibrated by a chart."""
+    return under("A", chart=texture.ChartInPicture(tuple(corners), *atlas))
+
+
+@pytest.mark.parametrize(
+    "further",
+    [
+        under("D65"),
+        texture.FurtherPictures(()),
+        TWICE,
+        by_chart(FAR),
+        by_chart(ON_A_LINE),
+        by_chart(CROSSED),
+        by_chart(CORNERS, str(ATLASES / "pmc.txt")),  # of 30 entries
+    ],
+)
+def test_settings_that_cannot_be_used_are_refused(further, convert, tungsten):
+    with raises(OptionError):
+        convert(tungsten, further)
+
+
+def test_pictures_that_cannot_be_used_are_refused(convert, tmp_path):
     with raises(TextureError, "photographs-of-different-sizes"):
         convert(np.full((8, 8, 3), 0.5))
-    with raises(TextureError):
+    with raises(TextureError, "file-not-found"):
         convert(tmp_path / "none.exr")
-    two = texture.FurtherPictures((texture.FurtherPicture("A"),) * 2)
-    for further in (under("D65"), texture.FurtherPictures(()), two):
-        with raises(OptionError):
-            convert(tungsten, further)
 
 
-CORNERS = (8.0, 8.0, 90.0, 12.0, 86.0, 70.0, 5.0, 66.0)
-
-
+@pytest.fixture
 def chart_scene(plain_cube):
     """A ColorChecker in perspective on grey, (SIZE, SIZE, 81)."""
     atlas = uplift.read_atlas(ATLASES / "macbeth.txt")
@@ -319,24 +280,23 @@ def chart_scene(plain_cube):
     inverse = np.linalg.inv(homography(np.reshape(CORNERS, (4, 2))))
     y, x = np.mgrid[:SIZE, :SIZE] + 0.5
     places = np.stack([x, y, np.ones_like(x)], axis=-1) @ inverse.T
-    u, v = places[..., 0] / places[..., 2], places[..., 1] / places[..., 2]
+    u, v = np.moveaxis(places[..., :2] / places[..., 2:], -1, 0)
     inside = (u >= 0) & (u < 1) & (v >= 0) & (v < 1)
-    column = np.clip((6 * u).astype(int), 0, 5)
-    row = np.clip((4 * v).astype(int), 0, 3)
+    patch = 6 * np.floor(4 * v) + np.floor(6 * u)
     scene = np.full((SIZE, SIZE, 81), 0.3)
-    scene[inside] = measured[(6 * row + column)[inside]]
+    scene[inside] = measured[patch[inside].astype(int)]
     return scene
 
 
-def test_a_chart_states_exposure_balance_and_noise(plain_cube, convert, tmp_path):
-    scene = chart_scene(plain_cube)
+def test_a_chart_states_exposure_balance_and_noise(
+    plain_cube, chart_scene, convert, tmp_path
+):
     sensor = plain_cube.data.sensor
     lit = observer.sensor("sRGB", "A")
-    first = np.clip(photograph_of(scene, sensor, exposure=0.8, noise=0.01), 0, 1)
-    second = photograph_of(scene, lit, noise=0.01) * np.float32([1.3, 1.2, 1.0])
+    first = np.clip(photograph_of(chart_scene, sensor, exposure=0.8, noise=0.01), 0, 1)
+    second = photograph_of(chart_scene, lit, noise=0.01) * np.float32([1.3, 1.2, 1.0])
     path = write_exr(tmp_path / "chart.exr", planes(first))
-    further = under("A", chart=texture.ChartInPicture(CORNERS))
-    facts = convert(second, further, first=path).facts
+    facts = convert(second, by_chart(CORNERS), first=path).facts
     assert float(facts[0].split()[5]) == pytest.approx(0.8, rel=0.02)
     gains = np.array(facts[1].split()[5:8], dtype=float)
     assert_allclose(gains, np.array([1.3, 1.2, 1.0]) / 0.8, rtol=0.02)
@@ -347,34 +307,16 @@ def test_a_chart_states_exposure_balance_and_noise(plain_cube, convert, tmp_path
     assert len(facts) == 4 + 24
 
 
-@pytest.mark.parametrize("order", ["1230", "2301", "3012", "0321", "1032", "0132"])
+@pytest.mark.parametrize("order", [[1, 2, 3, 0], [2, 3, 0, 1], [0, 3, 2, 1]])
 def test_corners_that_are_turned_or_mirrored_are_refused(
-    plain_cube, convert, tmp_path, order
+    chart_scene, convert, tmp_path, order
 ):
-    scene = chart_scene(plain_cube)
     first, second = (
-        photograph_of(scene, observer.sensor("sRGB", light), noise=0.02)
+        photograph_of(chart_scene, observer.sensor("sRGB", light), noise=0.02)
         for light in ("D65", "A")
     )
     path = write_exr(tmp_path / "chart.exr", planes(first))
-    corners = np.reshape(CORNERS, (4, 2))[list(map(int, order))]
-    chart = texture.ChartInPicture(tuple(corners.ravel()))
-    with raises(OptionError) as caught:
-        convert(second, under("A", chart=chart), first=path)
-    if order != "0132":  # its sides cross
-        assert caught.value.code == "chart-differs"
-        assert ",".join(f"{number:g}" for number in CORNERS) in caught.value.hint
-
-
-@pytest.mark.parametrize(
-    "chart",
-    [
-        texture.ChartInPicture((0.0, 0.0, 900.0, 0.0, 900.0, 900.0, 0.0, 900.0)),
-        texture.ChartInPicture((0.0, 0.0, 1.0, 1.0, 2.0, 2.0, 3.0, 3.0)),
-        texture.ChartInPicture(CORNERS, str(ATLASES / "pmc.txt")),
-    ],
-    ids=["outside", "on a line", "30 entries"],
-)
-def test_charts_that_cannot_be_used_are_refused(convert, day, chart):
-    with raises(OptionError):
-        convert(read_channels(day, "RGB") * [1.1, 1.0, 0.9], under("A", chart=chart))
+    corners = np.reshape(CORNERS, (4, 2))[order]
+    with raises(OptionError, "chart-differs") as caught:
+        convert(second, by_chart(corners.ravel()), first=path)
+    assert ",".join(f"{number:g}" for number in CORNERS) in caught.value.hint

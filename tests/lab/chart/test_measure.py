@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from tests.lab.chart.conftest import BATCHES, method_of
+from tests.lab.chart.conftest import method_of
 from tests.lab.conftest import grey
 from uplift.extras.colour.light_sets import CHART_LIGHTS
 from uplift.lab.chart.measure import MAX_CLAIM_RATIO, measure_method
@@ -41,7 +41,7 @@ def burn(seconds):
         (nan, {}, "spectra are not finite"),
         (lambda rgb, at: 1.1 + grey(rgb, at), {}, "0 to 1 are claimed"),
         (grey, {"claimed_error": 0.01}, "0.01 is claimed"),
-        (lambda rgb, at: grey(rgb, at)[:, :-1], {}, "spectra have shape ("),
+        (lambda rgb, at: grey(rgb, at[1:]), {}, "spectra have shape ("),
         (fail, {}, "raises ZeroDivisionError: by the last of these"),
         (
             lambda rgb, at: grey(rgb.astype(float), at),
@@ -71,26 +71,8 @@ def test_errors_are_those_of_the_runner(small_task):
         errors = spectrum_errors(spectra, measured, list(lights.values()))
         of_lights = [numbers[f"{prefix}{light}_mean"] for light in lights]
         assert_allclose(of_lights, errors.delta_e.mean(axis=0))
-        assert numbers[f"{prefix}lights_mean"] == pytest.approx(errors.delta_e.mean())
-        p99 = np.quantile(errors.rms, 0.99)
-        assert numbers[f"{prefix}rms_p99"] == pytest.approx(p99)
-
-
-def test_each_number_of_colours_is_timed_in_the_type_of_the_method(small_task):
-    sizes = set()
-
-    def uplift(rgb, wavelengths):
-        assert rgb.dtype == np.float32
-        sizes.add(len(rgb))
-        return grey(rgb, wavelengths)
-
-    numbers = measure_method(method_of(uplift, dtype="float32"), small_task).numbers
-    for batch in BATCHES:
-        assert batch in sizes
-        name = f"ns_{batch}"
-        assert numbers[f"{name}_least"] <= numbers[name] <= numbers[f"{name}_most"]
-        assert numbers[f"{name}_colours"] == batch
-    assert numbers["time_ns"] == numbers["ns_64"]
+        assert_allclose(numbers[f"{prefix}lights_mean"], errors.delta_e.mean())
+        assert_allclose(numbers[f"{prefix}rms_p99"], np.quantile(errors.rms, 0.99))
 
 
 @pytest.mark.parametrize(
@@ -108,11 +90,11 @@ def test_calls_have_as_many_colours_as_time_allows(small_task, call, colour, is_
     assert numbers["unseen_spectra"] == min(count, len(small_task.unseen.queried))
     assert (1 <= count <= 5) != is_whole
     assert numbers["ns_1_colours"] == 1
+    assert numbers["ns_64_least"] <= numbers["ns_64"] <= numbers["ns_64_most"]
     assert (numbers["ns_64_colours"] == 64) == is_whole
 
 
-@pytest.mark.parametrize("build", [3.0, None])
-def test_set_up_is_charged(small_task, build):
+def test_set_up_is_charged(small_task):
     """Building and loading as stated, and what the first call takes longer."""
     calls = []
 
@@ -122,11 +104,11 @@ def test_set_up_is_charged(small_task, build):
         calls.append(1)
         return grey(rgb, wavelengths)
 
-    prepared = PreparedMethod(uplift, 8, build_s=build, load_s=2.0)
+    prepared = PreparedMethod(uplift, 8, build_s=3.0, load_s=2.0)
     numbers = measure_method(method_of(None, lambda task: prepared), small_task).numbers
-    assert numbers.get("build_s") == build
+    assert numbers["build_s"] == 3.0
     assert 2.03 < numbers["load_s"] < 2.5
-    assert numbers["setup_s"] == (build or 0) + numbers["load_s"]
+    assert numbers["setup_s"] == 3.0 + numbers["load_s"]
 
 
 def test_reference_sensor_is_the_stated_sensor_at_1_nm(small_task):

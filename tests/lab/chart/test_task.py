@@ -26,13 +26,6 @@ def test_every_second_entry_is_known_and_the_others_test():
     assert unseen.left_out == families_like(unseen.queried) != ()
 
 
-def test_colours_contain_every_corner_and_grey_once(small_task):
-    rgb = small_task.colours
-    assert len(np.unique(rgb, axis=0)) == len(rgb)
-    assert np.isin(rgb, (0, 1)).all(axis=1).sum() == 8
-    assert (np.ptp(rgb, axis=1) == 0).sum() == 9
-
-
 def test_too_few_entries_are_an_error():
     greys = (Entry(name, [380, 780], [0.5, 0.5]) for name in ("one", "other"))
     with raises(AtlasError, "too-few-entries"):

@@ -13,10 +13,9 @@ from uplift.colorimetry import observer
 from uplift.lab.methods.burns2019 import reconstruct
 from uplift.lab.methods.colour_maps import (
     fit_map,
-    prepare,
     term_exponents,
 )
-from uplift.lab.methods.metamer_mean import metamer_mean, metamers, nearest_mixture
+from uplift.lab.methods.metamer_mean import metamer_mean
 from uplift.lab.runner import Task, spectra_of, within
 
 D65 = observer.light("D65")
@@ -38,16 +37,6 @@ def test_maps_are_exact_for_three_basis_spectra_and_scale(degree, count):
     assert_allclose(exact, spectra @ FL11.xyz.T / FL11.white, atol=1e-9)
     to_light = fit_map(degree, D65, FL11, MEASURED)
     assert_allclose(to_light(3 * xyz), 3 * to_light(xyz))
-
-
-def test_maps_know_the_library_without_the_families_of_the_task():
-    prepared = prepare(TASK, degree=1)
-    to_light = fit_map(1, D65, FL11, TASK.library)
-    expected = to_light(SENSOR.xyz(TASK.rgb) / D65.white)
-    assert_allclose(prepared.colours(TASK.rgb, FL11), expected)
-    errors = prepared.errors(TASK, [D65, FL11])
-    assert errors.delta_e[:, 1].mean() > 100 * errors.delta_e[:, 0].mean()
-    assert errors.rms is None
 
 
 def test_burns_spectra_have_their_colours_and_the_least_slope(monkeypatch):
@@ -74,18 +63,6 @@ def test_metamer_means_have_their_colours():
     assert_allclose(SENSOR.rgb(spectra), TASK.rgb, atol=1e-6)
     assert spectra.min() > 0
     assert spectra.max() < 1
-
-    # No mixture of these has the colour.
-    red = np.array([[0.9, 0.05, 0.05]])
+    red = np.array([[0.9, 0.05, 0.05]])  # the colour of no mixture
     (moved,) = metamer_mean(SENSOR, MEASURED[:3], red)
     assert_allclose(SENSOR.rgb(moved), red[0], atol=1e-3)
-
-
-def test_the_only_metamer_is_found():
-    spectra = MEASURED[:4]
-    mixture = np.array([0.1, 0.2, 0.3, 0.4]) @ spectra
-    xyz = mixture @ D65.xyz.T
-    groups = np.arange(4)[None]
-    assert_allclose(metamers(D65, spectra, groups, xyz)[0], mixture, atol=1e-6)
-    assert len(metamers(D65, spectra, groups, 2 * D65.white)) == 0
-    assert_allclose(nearest_mixture(D65, spectra, xyz), mixture, atol=1e-6)

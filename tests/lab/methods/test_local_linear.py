@@ -1,4 +1,4 @@
-"""Local-linear regression: spectra that are linear in RGB, leaving out one by one."""
+"""Local-linear regression: leaving out one by one."""
 
 import itertools
 
@@ -6,37 +6,28 @@ import numpy as np
 from numpy.testing import assert_allclose
 
 from uplift.atlas.sources import read_atlas
-from uplift.colorimetry import observer
 from uplift.colorimetry.illuminants import SCENE_LIGHTS
 from uplift.lab.methods import local_linear
 from uplift.lab.runner import named_lights, spectra_of, spectrum_errors, within
 
 
-def test_spectra_that_are_linear_in_rgb_are_reproduced(sensor):
-    weights = np.random.default_rng(0).uniform(-2, 2, (45, 3))
-    spectra = 0.5 + weights @ observer.light("A").xyz
-    found = local_linear.tune(sensor, spectra[:40])(sensor.rgb(spectra[40:]))
-    assert_allclose(found, spectra[40:], atol=1e-3)
-
-
 def test_the_smoothing_has_the_least_leave_one_out_error(sensor, monkeypatch):
     """Compared with leaving out one by one."""
-    known = spectra_of(within(read_atlas("rawtoaces"), sensor), sensor)[::9]
+    known = spectra_of(within(read_atlas("tcs"), sensor), sensor)
     colours = sensor.rgb(known)
     lights = list(named_lights(SCENE_LIGHTS).values())
 
-    def tuned(spectra, *choices):
-        for name, values in zip(("BANDWIDTHS", "RIDGES"), choices, strict=True):
-            monkeypatch.setattr(local_linear, name, values)
+    def tuned(spectra, bandwidths, ridges):
+        monkeypatch.setattr(local_linear, "BANDWIDTHS", bandwidths)
+        monkeypatch.setattr(local_linear, "RIDGES", ridges)
         return local_linear.tune(sensor, spectra)
 
     def slow(choices):
-        predicted = [
-            tuned(np.delete(known, row, axis=0), *choices)(colours[row : row + 1])
-            for row in range(len(known))
-        ]
-        spectra = np.concatenate(predicted)
-        return spectrum_errors(spectra, known, lights).delta_e.mean()
+        predicted = []
+        for row in range(len(known)):
+            others = np.delete(known, row, axis=0)
+            predicted.append(tuned(others, *choices)(colours[row : row + 1])[0])
+        return spectrum_errors(np.array(predicted), known, lights).delta_e.mean()
 
     best = min(itertools.product([(10.0,), (40.0,)], [(1e-6,), (1e-2,)]), key=slow)
     rgb = sensor.rgb(known.mean(axis=0)[None]) * [[0.9, 1.0, 1.1]]

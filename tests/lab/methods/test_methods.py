@@ -1,19 +1,13 @@
 """Methods of the chart against reference implementations."""
 
-from importlib import import_module
-
 import numpy as np
 import pytest
 from colour.recovery import RGB_to_sd_Mallett2019, RGB_to_sd_Smits1999
 from numpy.testing import assert_allclose
 
-from tests.parts import LLVM, need
 from uplift.atlas.sources import read_atlas
 from uplift.colorimetry import observer
-from uplift.extras.processes import call_in_child
-from uplift.lab.chart.selection import METHODS, select_methods
-from uplift.lab.method import NotInstalledError
-from uplift.lab.methods import mitsuba3
+from uplift.lab.chart.selection import select_methods
 from uplift.lab.methods.cubes import built_cube
 from uplift.lab.runner import divided
 
@@ -34,10 +28,6 @@ def prepared(name, task):
     return method.prepare(task).uplift
 
 
-def test_all_methods_are_selected_by_default():
-    assert select_methods() == list(METHODS)
-
-
 @pytest.mark.parametrize(
     ("name", "theirs"),
     [("smits1999", RGB_to_sd_Smits1999), ("mallett2019", RGB_to_sd_Mallett2019)],
@@ -49,8 +39,8 @@ def test_smits_and_mallett_match_colour_science(task, name, theirs):
 
 
 def test_jakob_has_the_colour(task):
-    found = prepared("jakob2019-direct", task)(RANDOM, AT)
-    assert_allclose(SENSOR.rgb(found), RANDOM, atol=2e-3)
+    found = prepared("jakob2019-direct", task)(RANDOM[:2], AT)
+    assert_allclose(SENSOR.rgb(found), RANDOM[:2], atol=2e-3)
 
 
 @pytest.mark.parametrize(
@@ -67,35 +57,9 @@ def test_float32_and_bulk_give_the_same_spectra(task, double, single):
     assert_allclose(found, prepared(double, task)(COLOURS, AT), atol=2e-6)
 
 
-def test_missing_mitsuba_is_not_installed(task, monkeypatch):
-    monkeypatch.setattr(mitsuba3, "find_spec", lambda name: None)
-    for name in ("mitsuba3-table", "mitsuba3-llvm", "jakob2019-table64"):
-        with pytest.raises(NotInstalledError, match="Mitsuba 3: pip install"):
-            prepared(name, task)
-
-
-def vectorised_and_table(task):
-    """Reflectances by Mitsuba's vectorised variant and by its table, for one colour and
-    for many.
-    """
-    drjit = import_module("drjit")
-    threads = drjit.thread_count()
-    found = []
-    for name in ("mitsuba3-llvm", "mitsuba3-table"):
-        uplift = prepared(name, task)
-        found.append(np.concatenate([uplift(COLOURS[:1], AT), uplift(COLOURS, AT)]))
-    assert drjit.thread_count() == threads
-    return found
-
-
-def test_vectorised_mitsuba_gives_the_reflectances_of_its_table(task):
-    need(LLVM)
-    compiled, table = call_in_child(vectorised_and_table, task, seconds=120)
-    assert_allclose(compiled, table, atol=1e-4)
-
-
+@pytest.mark.filterwarnings("ignore::uplift.UpliftWarning")
 def test_cubes_do_not_know_the_families_of_a_task(task):
-    cube, *_ = built_cube(task, atlas=True, dim=16, coefficients=3)
-    assert cube is built_cube(task, atlas=True, dim=16, coefficients=3)[0]
+    cube, *_ = built_cube(task, atlas=True, dim=8, coefficients=3)
+    assert cube is built_cube(task, atlas=True, dim=8, coefficients=3)[0]
     assert cube.atlas_names == task.known.names
     assert tuple(cube.data.provenance["options"]["leave_out"]) == ("tcs",)

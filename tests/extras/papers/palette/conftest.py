@@ -15,23 +15,16 @@ def model(sensor) -> FactorModel:
 
 
 @pytest.fixture(scope="session")
-def day(sensor) -> SpectrumSpec:
-    return SpectrumSpec("day", illuminant(sensor, "D65"))
-
-
-@pytest.fixture(scope="session")
-def lamp(sensor) -> SpectrumSpec:
-    return SpectrumSpec("lamp", illuminant(sensor, "FL11"))
-
-
-@pytest.fixture(scope="session")
-def metamers(sensor, day, lamp) -> Palette:
+def metamers(sensor) -> Palette:
     """Palette of two paints that share a free colour by day and differ
     under the lamp.
     """
     return Palette(
         sensor,
-        (day, lamp),
+        (
+            SpectrumSpec("day", illuminant(sensor, "D65")),
+            SpectrumSpec("lamp", illuminant(sensor, "FL11")),
+        ),
         (SpectrumSpec("fox", None), SpectrumSpec("moss", None)),
         (
             ColourGoal("fox", "day", free="coat"),

@@ -4,9 +4,10 @@ ball are where rays meet them.
 
 import matplotlib.image
 import numpy as np
-import OpenEXR
 import pytest
 
+from tests.extras.texture.conftest import write_exr
+from tests.helpers import raises
 from uplift.common.errors import OptionError, TextureError, UnknownNameError
 from uplift.extras.papers.palette import picture
 from uplift.extras.papers.palette.picture import cutaway, read_weights
@@ -24,31 +25,18 @@ def png(path, pixels):
 
 
 def exr(path, **planes):
-    planes = {name: np.array(plane, dtype=np.float32) for name, plane in planes.items()}
-    OpenEXR.File({"type": OpenEXR.scanlineimage}, planes).write(str(path))
-    return path
+    return write_exr(path, {name: np.float32(planes[name]) for name in planes})
 
 
 @pytest.mark.parametrize(
     ("pixels", "labels", "weights"),
     [
         ([SKIN, BONE, BLACK], LABELS, [[1, 0], [0, 1], [0, 0]]),  # black is empty
-        (
-            [SKIN, BLACK],
-            {**LABELS, "bone": "#000000"},
-            [[1, 0], [0, 1]],
-        ),  # unless it is a label
-        (
-            [(0, 0, 0), (1, 1, 1), (2, 2, 2)],
-            None,
-            [[0, 0], [1, 0], [0, 1]],
-        ),  # greys in order by default
-        (
-            [(*SKIN, 255), (*SKIN, 51), (*BONE, 0), (9, 9, 9, 0)],
-            LABELS,
-            [[1, 0], [0.2, 0], [0, 0], [0, 0]],
-        ),  # alpha
+        ([SKIN, BLACK], LABELS | {"bone": "#000000"}, [[1, 0], [0, 1]]),
+        ([BLACK, (1, 1, 1), (2, 2, 2)], None, [[0, 0], [1, 0], [0, 1]]),
+        ([(*SKIN, 255), (*SKIN, 51), (*BONE, 0)], LABELS, [[1, 0], [0.2, 0], [0, 0]]),
     ],
+    ids=["labels", "black", "greys", "alpha"],
 )
 def test_colours_are_labels_and_alpha_is_the_weight(tmp_path, pixels, labels, weights):
     found = read_weights(png(tmp_path / "a.png", [pixels]), NAMES, labels)
@@ -57,9 +45,7 @@ def test_colours_are_labels_and_alpha_is_the_weight(tmp_path, pixels, labels, we
 
 
 def test_channels_named_after_materials_are_their_weights(tmp_path):
-    path = exr(tmp_path / "a.exr", bone=[[0.5, 1.5]], skin=[[0.25, 0]], Z=[[7, 8]])
-    assert read_weights(path, NAMES).tolist() == [[[0.25, 0.5], [0, 1.5]]]
-    path = exr(tmp_path / "b.exr", bone=[[0.5, 1.5]])
+    path = exr(tmp_path / "a.exr", bone=[[0.5, 1.5]], Z=[[7, 8]])
     assert read_weights(path, NAMES).tolist() == [[[0, 0.5], [0, 1.5]]]
 
 
@@ -69,29 +55,27 @@ def test_channels_named_after_materials_are_their_weights(tmp_path):
         ([[SKIN]], {"skim": "#ffffff"}, UnknownNameError),
         ([[SKIN]], {"skin": "orange"}, OptionError),
         ([[SKIN]], {"skin": "#ffffff", "bone": "#FFFFFF"}, OptionError),
-        ([[SKIN, (1, 2, 3), (9, 9, 9)]], LABELS, TextureError),
+        ([[SKIN, (1, 2, 3)]], LABELS, TextureError),
         ([[SKIN] * 11], LABELS, TextureError),
-        ({"R": [[1.0]], "G": [[1.0]], "B": [[1.0]]}, None, TextureError),
+        ({"R": [[1.0]]}, None, TextureError),
         ({"skin": [[np.nan]]}, None, TextureError),
         ({"skin": [[-0.1]]}, None, TextureError),
-        (None, None, TextureError),
     ],
 )
 def test_unusable_pictures_and_labels_are_refused(
     tmp_path, monkeypatch, content, labels, error
 ):
     monkeypatch.setattr(picture, "MAX_PIXELS", 10)
-    path = tmp_path / ("a.exr" if isinstance(content, dict) else "a.png")
     if isinstance(content, dict):
-        exr(path, **content)
-    elif content is not None:
-        png(path, content)
-    with pytest.raises(error) as caught:
+        path = exr(tmp_path / "a.exr", **content)
+    else:
+        path = png(tmp_path / "a.png", content)
+    with raises(error) as caught:
         read_weights(path, NAMES, labels)
     assert caught.value.path == (path if error is TextureError else None)
 
 
-@pytest.mark.parametrize("count", [1, 2, 3, 7, 24])
+@pytest.mark.parametrize("count", [1, 3, 24])
 def test_every_material_is_visible_and_weights_sum_to_at_most_1(count):
     weights = cutaway(count, size=160)
     assert weights.min() == 0

@@ -11,7 +11,6 @@ import pytest
 from uplift_cli.main import main
 
 from tests.cli.conftest import home, refuse, run, shown  # noqa: F401
-from uplift.cube.file import read
 from uplift.extras.scene.plan.candidates import PIXELS
 from uplift.extras.scene.plan.files import cube_name
 from uplift.extras.scene.plan.summary import commands
@@ -29,29 +28,15 @@ def here(home, kitchen, planned, monkeypatch):
     return home
 
 
-def test_a_plan_is_printed_written_and_built(run, here):
+def test_a_plan_is_printed_and_written_and_options_do_not_change_it(run, here):
     result = run("plan", "kitchen.toml")
     assert result.stdout.startswith("  uplift build --plan kitchen.plan.json\n")
-    assert (
-        max(map(len, result.stdout.partition("kitchen.toml: ")[2].splitlines())) <= 80
-    )
     assert "kitchen.plan.json" in result.stderr
     values = json.loads((here / "kitchen.plan.json").read_text("utf-8"))
-    assert (
-        json.loads(run("plan", "kitchen.toml", "--format", "json", "--force").stdout)
-        == values
-    )
-    built = run("build", "--plan", "kitchen.plan.json")
-    assert "kitchen.uplift: " in built.stdout
-    data = read(here / "kitchen.uplift")
-    assert (data.lattice.dim, data.model.count) == (
-        values["build"]["dim"],
-        values["build"]["coefficients"],
-    )
-    error = run(
-        "build", "--plan", "kitchen.plan.json", "--dim", 4, "--light", "A", code=2
-    ).stderr
-    assert "leave out --dim, --light." in error
+    again = run("plan", "kitchen.toml", "--format", "json", "--force").stdout
+    assert json.loads(again) == values
+    words = "build --plan kitchen.plan.json --dim 4 --light A"
+    assert "leave out --dim, --light." in run(*words.split(), code=2).stderr
 
 
 def test_a_plan_outside_the_folder_of_its_scene_is_refused_before_the_search(
@@ -60,15 +45,10 @@ def test_a_plan_outside_the_folder_of_its_scene_is_refused_before_the_search(
     monkeypatch.setattr("uplift.extras.scene.plan.planning.plan", None)
     (here / "empty").mkdir()
     error = run("plan", "kitchen.toml", "-o", "empty/a.plan.json", code=2).stderr
-    assert (
-        "must lie in the folder of wood.exr, or above it; write for example "
-        "kitchen.plan.json"
-    ) in error
+    assert "write for example kitchen.plan.json" in error
 
 
-@pytest.mark.parametrize(
-    "pixel", PIXELS, ids=lambda pixel: f"{pixel.form}-{pixel.depth}{pixel.mode}"
-)
+@pytest.mark.parametrize("pixel", PIXELS)
 def test_command_lines_are_accepted(planned, tmp_path, pixel):
     found = planned[0]
     path = tmp_path / "my plan.plan.json"
