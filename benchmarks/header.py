@@ -37,7 +37,6 @@ RUNS = 9
 COMPARED = 100_000
 """Colours anywhere, and as many on the faces of RGB, that are compared."""
 RAY = np.array([450.0, 510.0, 570.0, 630.0])
-SPECTRUM_WIDTH = 16
 HEADERS = ("exported", "uplift.h")
 MODULES = ("uplift.js",)
 """Programs whose times `header.c` and `header.mjs` print; the last one's spectra are
@@ -104,13 +103,13 @@ def lookups() -> Iterator[Row]:
     for path in (*sorted(CUBES.glob("*-16*.uplift")), *PACKAGED.values()):
         cube = load(path)
         rgb = compared_colours(cube)
-        for at, width in ((cube.wavelengths, SPECTRUM_WIDTH), (RAY, len(RAY))):
+        for at in (cube.wavelengths, RAY):
             expected = cube.reflectance(rgb.astype(float), at)
             row = {"cube": path.stem, "wavelengths": len(at)}
             with tempfile.TemporaryDirectory() as name:
                 folder = Path(name)
                 run = partial(run_lookups, folder=folder, at=at)
-                header = [write_headers(cube, folder, width), path]
+                header = [write_headers(cube, folder), path]
                 module = [*write_script(folder), path]
                 for command, programs in ((header, HEADERS), (module, MODULES)):
                     spectra, _ = run(*command, rgb=rgb, runs=1)
@@ -122,12 +121,11 @@ def lookups() -> Iterator[Row]:
                         yield row | found
 
 
-def write_headers(cube: Cube, folder: Path, width: int) -> Path:
+def write_headers(cube: Cube, folder: Path) -> Path:
     """Compile the program of the exported header and uplift.h, which take turns."""
     write_program(cube.data, folder / "cube.h")
     write_header(folder / HEADER)
-    widths = (f"-DUPLIFT_WIDTH={width}", f"-DCUBE_WIDTH={width}")
-    return compile_c(ROOT / "benchmarks" / "header.c", folder, *NATIVE, *widths)
+    return compile_c(ROOT / "benchmarks" / "header.c", folder, *NATIVE)
 
 
 def write_script(folder: Path) -> tuple[str, str]:

@@ -10,7 +10,6 @@ import hashlib
 import json
 import sys
 from functools import cached_property
-from itertools import product
 from pathlib import Path
 
 import numpy as np
@@ -30,15 +29,17 @@ GREY = (
     1e-6,
     1e-4,
 )  # weights of grey, until the moments have a spectrum
-LEAST, SLOPE, MOST = (
+LEAST, SLOPE, STEEP, MOST = (
     3e-4,
     0.03,
+    100,
     0.01,
 )  # distance from 0 and 1 of the mixtures that are moved
 MAX_SIZE, EDGE = (
     500,
     1e-6,
 )  # of multipliers that are mixed without their own colour; of entries from the edge
+ALL_CORNERS = np.indices((2, 2, 2)).reshape(3, 8).T
 FEATURES = {
     "debug",
     "errors",
@@ -120,9 +121,8 @@ class Cube:
         y = np.zeros(3)
         part = 1.0
         scale = np.linalg.inv(np.linalg.cholesky(self.matrix @ self.curves))
-        least = min(
-            LEAST + SLOPE * np.abs(scale @ (goal - self.matrix @ at_sensor)).max(), MOST
-        )
+        off = np.abs(scale @ (goal - self.matrix @ at_sensor)).max()
+        least = min(LEAST + SLOPE * off, STEEP * off, MOST)
         x = self.linear(at_sensor, least)
         off = goal - self.matrix @ self.squash(x)
         for _ in range(100):
@@ -151,16 +151,15 @@ class Cube:
             np.searchsorted(self.nodes, at, side="right") - 1, 0, len(self.nodes) - 2
         )
         along = (at - self.nodes[low]) / (self.nodes[low + 1] - self.nodes[low])
-        rows = []
-        weights = []
-        for corner in product((0, 1), repeat=3):
-            red, green, blue = low + corner
-            rows.append(
-                self.row[int((red * len(self.nodes) + green) * len(self.nodes) + blue)]
-            )
-            weights.append(np.where(corner, along, 1 - along).prod())
-        is_exact = self.arrays["distance"][rows] <= self.threshold
-        limits = np.where(is_exact, np.inf, MAX_SIZE)
+        # along the axes in the order of decreasing fractions; red, green, blue if equal
+        order = np.argsort(-along, kind="stable")
+        corners = low + np.concatenate(
+            [np.zeros((1, 3), int), np.eye(3, dtype=int)[order].cumsum(0)]
+        )
+        rows = [self.row[number] for number in self.numbers(corners)]
+        weights = -np.diff(along[order], prepend=1, append=0)
+        own = self.arrays["distance"] <= self.threshold
+        limits = np.where(own[rows], np.inf, MAX_SIZE)
         value = weights @ self.spectra(
             self.arrays["coefficients"][rows].astype(float), wavelengths, limits
         )
@@ -169,7 +168,13 @@ class Cube:
                 share * value
                 + (1 - share) * self.spectra(self.entries[[entry]], wavelengths)[0]
             )
-        return value, is_exact.all()
+        cell = [self.row.get(number) for number in self.numbers(low + ALL_CORNERS)]
+        return value, all(own[row] for row in cell if row is not None)
+
+    def numbers(self, positions):
+        """Numbers of the nodes at positions (n, 3)."""
+        dim = len(self.nodes)
+        return (positions @ [dim * dim, dim, 1]).tolist()
 
     def box(self, rgb):
         """The entry in whose box a colour lies, the weight of the lattice, and the

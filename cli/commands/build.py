@@ -351,7 +351,7 @@ def _print_summary(cube: Cube, path: Path, seconds: float) -> None:
     data = cube.data
     counts = data.points.counts()
     facts = [f"{data.lattice.dim}³ nodes"]
-    if data.complete_cells is not None:
+    if data.is_sparse:
         count = int(data.points.present.sum())
         nodes = pluralise(data.lattice.size, "node")
         facts = [f"{count:,} of {nodes} ({count / data.lattice.size:.1%})"]

@@ -46,7 +46,7 @@ atlases = arrays(
 
 @given(atlases)
 def test_all_corners_of_the_cells_of_entries_are_seeds_once(rgb):
-    corners, _ = LATTICE.corners(rgb)
+    corners = LATTICE.cell_corners(LATTICE.cell(rgb)[0])
     assert_array_equal(np.sort(seed(LATTICE, rgb).points), np.unique(corners))
 
 

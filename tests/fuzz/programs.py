@@ -20,7 +20,7 @@ READ = (
     "DIM",
     "LATTICE",
     "ENTRIES",
-    "NODES",
+    "CELLS",
     "BINS",
     "LISTS",
     "BOXES",

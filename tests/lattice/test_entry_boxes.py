@@ -99,7 +99,7 @@ def colours_in(data, cell):
 
 
 @pytest.mark.parametrize("node", [None, 0, 3, 7])
-def test_required_points_answer_every_colour_of_a_cell(small_cube, plain_cube, node):
+def test_required_points_answer_their_colours(small_cube, plain_cube, node):
     """Also across faces on nodes, where rounding decides."""
     data = small_cube.data
     if node is not None:
@@ -109,6 +109,18 @@ def test_required_points_answer_every_colour_of_a_cell(small_cube, plain_cube, n
     cells = np.unique(data.entry_boxes.cells[0])
     assert cells.size
     for cell in cells[::3]:
-        nodes = around(data, colours_in(data, cell))
-        required = data.entry_boxes.required_points(data.lattice.mask(cell))
-        assert required[nodes.points[nodes.weights > 0]].all()
+        rgb = colours_in(data, cell)
+        required = data.entry_boxes.required_points([rgb])
+        assert required[around(data, rgb).points].all()
+
+
+def test_required_points_allow_for_rounding_of_the_colours(plain_cube):
+    random = np.random.default_rng(4)
+    rgb = random.random((60, 3))
+    rgb[:20] = rgb[:20, :1]  # greys lie on the edge between six tetrahedra
+    rgb[20:40, 2] = plain_cube.data.lattice.nodes[3]
+    required = plain_cube.data.entry_boxes.required_points([rgb])
+    moved = np.clip(rgb + random.uniform(-MARGIN, MARGIN, (50, 60, 3)), 0, 1)
+    corners, _ = plain_cube.data.lattice.corners(moved.reshape(-1, 3))
+    assert required[corners].all()
+    assert required.sum() < 8 * len(rgb)

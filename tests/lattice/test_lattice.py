@@ -37,6 +37,21 @@ def test_weights_are_a_partition_of_unity_and_reproduce_the_colour(rgb):
     )
 
 
+@given(colours)
+def test_corners_lead_along_the_axes_in_the_order_of_falling_fractions(rgb):
+    rgb[0] = rgb[0, 0]  # a grey, whose fractions are equal
+    rgb[1, 2] = rgb[1, 0]
+    points, weights = UNEVEN.corners(rgb)
+    for colour, corners, shares in zip(rgb, points, weights, strict=True):
+        low, fraction = (part[0] for part in UNEVEN.cell(colour[None]))
+        path = [low]
+        for axis in sorted(range(3), key=lambda axis: -fraction[axis]):
+            path.append(path[-1] + np.eye(3, dtype=int)[axis])
+        assert corners.tolist() == UNEVEN.index(np.array(path)).tolist()
+        ends = [1, *sorted(fraction, reverse=True), 0]
+        assert_allclose(shares, -np.diff(ends), rtol=0, atol=1e-15)
+
+
 def test_neighbours_are_those_within_one_step():
     around, inside = UNEVEN.neighbours(np.arange(UNEVEN.size))
     position = UNEVEN.position(np.arange(UNEVEN.size))

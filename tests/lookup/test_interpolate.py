@@ -32,7 +32,7 @@ def test_a_point_has_its_stored_spectrum(cube, mode):
     assert_allclose(found, stored_spectra(cube.data, np.array(at)), rtol=0, atol=1e-12)
 
 
-def test_coefficients_are_those_stored_at_a_point_and_trilinear_in_a_cell(cube):
+def test_coefficients_are_those_stored_at_a_point_and_linear_in_a_tetrahedron(cube):
     nodes = cube.data.lattice.nodes
     stored = cube.data.points.coefficients
     assert_allclose(
@@ -41,12 +41,9 @@ def test_coefficients_are_those_stored_at_a_point_and_trilinear_in_a_cell(cube):
     low = nodes[[3, 5, 2]]
     high = nodes[[4, 6, 3]]
     fraction = np.array([0.25, 0.5, 0.9])
-    expected = np.zeros(cube.data.model.count)
-    for r in (0, 1):
-        for g in (0, 1):
-            for b in (0, 1):
-                share = np.prod(np.where([r, g, b], fraction, 1 - fraction))
-                expected += share * stored[((3 + r) * 8 + 5 + g) * 8 + 2 + b]
+    # blue is the furthest along its axis, then green
+    path = np.array([[3, 5, 2], [3, 5, 3], [3, 6, 3], [4, 6, 3]])
+    expected = [0.1, 0.4, 0.25, 0.25] @ stored[path @ [64, 8, 1]]
     found = cube.coefficients(low + fraction * (high - low))
     assert_allclose(found, expected, rtol=1e-6, atol=1e-6)
 
@@ -78,7 +75,12 @@ def test_the_nearest_lattice_point_answers_where_no_entry_is_near(plain_cube):
     nodes = plain_cube.data.lattice.nodes
     points = plain_cube.data.lattice.points
     low, fraction = plain_cube.data.lattice.cell(rgb)
-    wanted = nodes[low + (fraction > 0.5)]
+    # Of 1, t₁, t₂, t₃, 0 the two that are furthest apart, along the axes in this order
+    order = np.argsort(-fraction, axis=1)
+    falling = np.take_along_axis(fraction, order, axis=1)
+    best = (-np.diff(falling, prepend=1, append=0, axis=1)).argmax(axis=1)
+    passed = np.argsort(order, axis=1) < best[:, None]
+    wanted = nodes[low + passed]
     rows = [int(np.flatnonzero((points == point).all(axis=1))[0]) for point in wanted]
     expected = stored_spectra(plain_cube.data, plain_cube.data.sensor.wavelengths)[rows]
     assert_allclose(

@@ -43,25 +43,34 @@ def test_spectra_are_those_of_numpy(cube, kind, most):
     assert np.abs(found - expected).mean() < most / 200
 
 
-@pytest.mark.parametrize("name", ["wide_cube", "wide_sigmoid_cube"])
-@pytest.mark.parametrize(("kind", "most"), [(np.float32, 1e-3), (np.float64, 1e-6)])
+@pytest.mark.parametrize(
+    ("name", "kind", "most"),
+    [("wide_cube", np.float32, 1e-3), ("wide_sigmoid_cube", np.float64, 1e-6)],
+)
 def test_spectra_next_to_unrealisable_colours_are_those_of_numpy(
     request, name, kind, most
 ):
     cube = request.getfixturevalue(name)
-    rgb = np.random.default_rng(8).random((600, 3)).astype(kind)
-    rgb[:200] **= 3
+    rgb = np.random.default_rng(8).random((300, 3)).astype(kind)
+    rgb[:100] **= 3
     with jax.enable_x64(kind == np.float64):
-        traced = traceable(cube, dtype=kind)
+        traced = traceable(cube, AT, dtype=kind)
         found = np.asarray(evaluate(traced, rgb))
-        by_colour = jax.vmap(evaluate, (None, 0))(traced, rgb)
     assert ((found >= 0) & (found <= 1)).all()
-    off = np.abs(found - cube.reflectance(rgb)).max(axis=1)
+    off = np.abs(found - cube.reflectance(rgb, AT)).max(axis=1)
     inside = cube.data.solid.signed_distance(rgb) < -1e-3
     assert (is_inexact(cube.data, rgb) & inside).sum() > 50
     assert off[inside].max() < most
     assert np.median(off) < most / 100
-    assert_allclose(by_colour[inside], found[inside], rtol=0, atol=most)
+
+
+def test_colours_next_to_unrealisable_ones_may_be_mapped_one_by_one(wide_cube):
+    rgb = np.random.default_rng(8).random((40, 3)).astype(np.float32)
+    traced = traceable(wide_cube, AT)
+    by_colour = jax.vmap(evaluate, (None, 0))(traced, rgb)
+    inside = wide_cube.data.solid.signed_distance(rgb) < -1e-3
+    expected = evaluate(traced, rgb)[inside]
+    assert_allclose(by_colour[inside], expected, rtol=0, atol=1e-3)
 
 
 @pytest.mark.parametrize("kind", [np.float32, np.float64])

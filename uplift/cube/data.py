@@ -17,7 +17,7 @@ from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Array, Indices, Mask
 from uplift.common.errors import OptionError
 from uplift.common.text import pluralise
-from uplift.lattice.entry_boxes import EntryBoxes, OutsideBoxes
+from uplift.lattice.entry_boxes import MARGIN, EntryBoxes, OutsideBoxes
 from uplift.lattice.lattice import Lattice
 from uplift.lattice.point_table import PointTable
 from uplift.models.model import Model, evaluate
@@ -203,12 +203,11 @@ class CubeData:
         return solid(self.sensor.matrix)
 
     @cached_property
-    def complete_cells(self) -> Mask | None:
-        """(n,) True for cells with eight present corners, by the number of the lowest.
-        None if no node is absent.
+    def is_sparse(self) -> bool:
+        """Whether nodes are absent: only colours whose tetrahedron is there are
+        answered.
         """
-        present = self.points.present
-        return None if present.all() else self.lattice.complete_cells(present)
+        return not self.points.present.all()
 
     @cached_property
     def inexact_cells(self) -> Mask | None:
@@ -232,9 +231,8 @@ class CubeData:
         """Return the absent nodes that linear RGB (n, 3) need, or all absent nodes."""
         absent = ~self.points.present
         if rgb is not None:
-            absent &= self.lattice.corner_points(
-                self.lattice.mask(self.entry_boxes.cell(rgb))
-            )
+            evaluated = self.entry_boxes.nodes(rgb).lattice_rgb(rgb)
+            absent &= self.lattice.needed(evaluated, MARGIN)[1]
         return np.flatnonzero(absent)
 
     def smoothed_multipliers(self, points: Indices) -> Array:

@@ -19,7 +19,7 @@ from uplift.cube.schema import (
 from uplift.models.model import Model
 
 FORMAT = "uplift cube"
-VERSION = 4
+VERSION = 5
 FEATURES = (
     "debug",
     "errors",
@@ -33,10 +33,8 @@ FEATURES = (
 """Optional parts of a file, in the order in which the metadata list them. Earlier
 readers refuse a new one.
 """
-KIND = Kind(FORMAT, (3, VERSION), "cube", foreign="not-a-cube", features=FEATURES)
-"""Versions that are read. The entries of version 3 have as many coefficients as the
-nodes.
-"""
+KIND = Kind(FORMAT, (VERSION,), "cube", foreign="not-a-cube", features=FEATURES)
+"""Nodes of earlier versions were fitted for another interpolation, and are not read."""
 
 
 def write(data: CubeData, path: str | os.PathLike[str], *, force: bool = False) -> None:
@@ -50,15 +48,7 @@ def read(path: str | os.PathLike[str]) -> CubeData:
     """Read a cube file. A file that is missing, damaged, of another kind or invalid is
     a `CubeFileError`.
     """
-    return load(Path(path), KIND, _decode)
-
-
-def _decode(tensors: Tensors, metadata: dict[str, Any]) -> CubeData:
-    """Make the cube of a file."""
-    # In version 3 nodes and entries share one model.
-    if metadata["version"] < VERSION:
-        metadata["entry_model"] = metadata.get("model")
-    return decode(tensors, metadata)
+    return load(Path(path), KIND, decode)
 
 
 def digest(data: CubeData) -> str:

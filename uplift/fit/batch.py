@@ -1,5 +1,5 @@
-"""Batches of few shapes, so that XLA compiles rarely, over all devices of JAX; the
-compiled integrals of moments.
+"""Batches of few shapes, so that XLA compiles rarely, over all CPUs of JAX or the
+devices that its user named; the compiled integrals of moments.
 """
 
 from collections.abc import Callable
@@ -51,12 +51,13 @@ def map_batches(function: Callable[..., Any], constants: Any, *arrays: Any) -> A
     Batches run side by side.
     """
     require_xla()
-    devices = len(jax.devices())
+    named = _devices()
+    devices = len(named)
     parts = []
-    width, chunk = CPU_ROWS if jax.default_backend() == "cpu" else ACCELERATOR_ROWS
+    width, chunk = CPU_ROWS if named[0].platform == "cpu" else ACCELERATOR_ROWS
     total = len(jax.tree.leaves(arrays)[0])
-    with jax.enable_x64(True):
-        run = _program(function, chunk, devices)
+    with jax.enable_x64(True), jax.default_device(named[0]):
+        run = _program(function, chunk, named)
         for rows in blocks(total, devices * width):
             # Chunks beyond the counts are not computed.
             counts = np.clip(
@@ -67,6 +68,14 @@ def map_batches(function: Callable[..., Any], constants: Any, *arrays: Any) -> A
             )
             parts.append(run(constants, counts, given))
         return jax.tree.map(lambda *joined: np.concatenate(joined)[:total], *parts)
+
+
+def _devices() -> tuple[jax.Device, ...]:
+    """The CPUs: accelerators make builds no shorter. The devices that
+    ``JAX_PLATFORMS`` names, if any.
+    """
+    is_named = bool(jax.config.values["jax_platforms"])
+    return tuple(jax.devices() if is_named else jax.devices("cpu"))
 
 
 def _padded(array: Array, count: int) -> Array:
@@ -80,7 +89,7 @@ def _padded(array: Array, count: int) -> Array:
 
 @cache
 def _program(
-    function: Callable[..., Any], chunk: int, devices: int
+    function: Callable[..., Any], chunk: int, devices: tuple[jax.Device, ...]
 ) -> Callable[..., Any]:
     """Compile the loop over the chunks of a batch on each device."""
     traced_once = compiled(function)
@@ -114,9 +123,9 @@ def _program(
             lambda carry: carry[0] < counts[0], advance, (jnp.asarray(0), empty)
         )[1]
 
-    if devices == 1:
+    if len(devices) == 1:
         return compiled(run)
-    mesh = Mesh(np.array(jax.devices()), ("rows",))
+    mesh = Mesh(np.array(devices), ("rows",))
     given = (EVERYWHERE, ROWS, ROWS)
     run = jax.shard_map(run, mesh=mesh, in_specs=given, out_specs=ROWS, check_vma=False)
     shardings = tuple(NamedSharding(mesh, spec) for spec in given)

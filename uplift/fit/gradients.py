@@ -1,8 +1,8 @@
 """Nodes that differ too much from their neighbours: halos around entries in gradients
 under other lights (docs/mathematics.md, 8).
 
-Cells are linear in RGB along each axis, so the steepest steps of a cell start or end at
-its corners.
+Spectra are linear in RGB within each tetrahedron of a cell, so the steepest steps of a
+code start or end at its corners.
 """
 
 from collections.abc import Sequence
@@ -14,7 +14,7 @@ from uplift.colorimetry.delta_e import delta_e_2000, lab
 from uplift.colorimetry.sensor import Light, Sensor
 from uplift.common.arrays import Array, Indices, Mask, Values, blocks
 from uplift.fit.growth import Growth
-from uplift.lattice.lattice import CORNERS, NEIGHBOURS, Lattice
+from uplift.lattice.lattice import CORNERS, NEIGHBOURS, Lattice, corner_room
 from uplift.models.model import evaluate
 
 LARGEST_EXCESS = 1.0
@@ -31,7 +31,7 @@ SLIGHT_EXCESS = 0.6
 """The same in L*a*b* between corners, below which no step of a cell breaks the law."""
 ROUNDS = 8
 """Shipped sets need up to four in sRGB."""
-MAX_PASSES = 32
+MAX_PASSES = 8
 SLAB = 1 << 15
 """Cells whose corners are evaluated at a time."""
 BLOCK = 1 << 10
@@ -78,7 +78,9 @@ class Steps:
         count = len(self.lights)
         flat = corners.reshape(len(cells), len(CORNERS), 3 * count)
         before, after = (
-            (_weights(ends) @ flat).reshape(len(cells), STARTS, count, 3)
+            (np.maximum(corner_room(ends, ends), 0) @ flat).reshape(
+                len(cells), STARTS, count, 3
+            )
             for ends in self._ends(self.lattice.position(cells))
         )
         white = np.ones(3)
@@ -223,9 +225,3 @@ def _relax(growth: Growth, points: Indices, exact: Mask) -> None:
     growth.multipliers[kept] = solution.multipliers[solved]
     growth.distance[kept] = solution.distance[solved]
     growth.rgb[kept] = (goal - solution.residual)[solved]
-
-
-def _weights(fraction: Array) -> Array:
-    """Trilinear weights (..., 8) of corners at fractions (..., 3) of cells."""
-    sides = np.where(CORNERS > 0, fraction[..., None, :], 1 - fraction[..., None, :])
-    return np.prod(sides, axis=-1)

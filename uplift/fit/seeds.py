@@ -85,7 +85,7 @@ def seed(lattice: Lattice, rgb: Array) -> Seeds:
     every entry gets the nearest free corner of its cell: the "better approach" of
     Tódová 2020, section 3.1.2.
     """
-    cells, _ = lattice.corners(rgb)
+    cells = lattice.cell_corners(lattice.cell(rgb)[0])
     distance = np.linalg.norm(lattice.target(cells) - rgb[:, None, :], axis=-1)
     by_distance = np.argsort(distance, axis=1, kind="stable")
     queue = np.take_along_axis(cells, by_distance, axis=1)

@@ -8,6 +8,7 @@ by the same weights. It has exactly the colour x and stays within [0, 1]. It equ
 lattice on the faces of the box, and the entry at its centre. Needs numpy only.
 """
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import product
@@ -56,14 +57,14 @@ class BoxHits(NamedTuple):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Nodes:
-    """The nodes around n colours: eight corners of a cell each and, for k of them, the
-    entry of a box.
+    """The nodes around n colours: four corners of a tetrahedron each and, for k of
+    them, the entry of a box.
     """
 
     points: Indices
-    """(n, 8) numbers of the corners in the lattice."""
+    """(n, 4) numbers of the corners in the lattice."""
     weights: Array
-    """(n, 8) their trilinear weights w, summing to 1."""
+    """(n, 4) their weights w, summing to 1."""
     hits: BoxHits
     """The colours in entry boxes. There the lattice has weight t and is evaluated where
     the ray leaves the box.
@@ -156,24 +157,31 @@ class EntryBoxes:
         touched[self.cells[0]] = True
         return touched
 
-    def required_points(self, cells: Mask) -> Mask:
-        """Nodes needed to answer any colour in a set of cells, both as masks (dim³,).
+    def required_points(self, colours: Iterable[Array]) -> Mask:
+        """Nodes (dim³,) needed to answer arrays of linear RGB (n, 3), within `MARGIN`.
 
-        They are the corners of the cells and, where a box touches one, the corners of
-        all cells that the box touches: a colour in the box is answered from a point on
-        its faces, within `MARGIN`.
+        They are the corners of their tetrahedra and, where a box touches the cell of
+        one, of all cells that the box touches: a colour in the box is answered from a
+        point on its faces.
         """
-        requested = cells.reshape(self.lattice.shape)
-        required = requested.copy()
-        low, _ = self.lattice.cell(self.faces[0] - MARGIN)
-        high, _ = self.lattice.cell(self.faces[1] + MARGIN)
+        lattice = self.lattice
+        requested = np.zeros(lattice.size, dtype=bool)
+        points = np.zeros(lattice.size, dtype=bool)
+        for rgb in colours:
+            cells, corners = lattice.needed(rgb, MARGIN)
+            requested |= cells
+            points |= corners
+        requested = requested.reshape(lattice.shape)
+        around = np.zeros(lattice.shape, dtype=bool)
+        low, _ = lattice.cell(self.faces[0] - MARGIN)
+        high, _ = lattice.cell(self.faces[1] + MARGIN)
         for entry in np.flatnonzero(self.half_width > 0):
             box = tuple(
                 slice(low[entry, axis], high[entry, axis] + 1) for axis in range(3)
             )
             if requested[box].any():
-                required[box] = True
-        return self.lattice.corner_points(required.ravel())
+                around[box] = True
+        return points | lattice.corner_points(around.ravel())
 
     def locate(self, rgb: Array) -> tuple[Indices, Array, BoxHits]:
         """Find the cells (`Lattice.cell`) in which the lattice is evaluated for linear
@@ -188,6 +196,11 @@ class EntryBoxes:
         hits = self.find(rgb, self.lattice.index(low))
         low[hits.rows], fraction[hits.rows] = self.lattice.cell(hits.exit_rgb)
         return low, fraction, hits
+
+    def nodes(self, rgb: Array) -> Nodes:
+        """Find the nodes around linear RGB (n, 3), whether present or not."""
+        low, fraction, hits = self.locate(rgb)
+        return Nodes(*self.lattice.tetrahedra(low, fraction), hits)
 
     def cell(self, rgb: Array) -> Indices:
         """Return the numbers (n,) of the cells in which the lattice is evaluated for

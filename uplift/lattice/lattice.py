@@ -28,8 +28,8 @@ class Lattice:
     each axis, usually from 0 to 1.
 
     A cell is the box between eight neighbouring nodes; it has the number of its lowest
-    corner. Positions are steps along the axes, in fractions between nodes. Sets of
-    nodes and of cells are masks (dim³,).
+    corner, and consists of six tetrahedra. Positions are steps along the axes, in
+    fractions between nodes. Sets of nodes and of cells are masks (dim³,).
     """
 
     nodes: Array
@@ -105,22 +105,59 @@ class Lattice:
         return low, (rgb - start) / (self.nodes[low + 1] - start)
 
     def corners(self, rgb: Array) -> tuple[Indices, Array]:
-        """Corners (n, 8) of the cells around linear RGB (n, 3), with trilinear weights
-        (n, 8).
+        """Corners (n, 4) of the tetrahedra around linear RGB (n, 3), with weights (n,
+        4).
         """
-        return self.cell_corners(*self.cell(rgb))
+        return self.tetrahedra(*self.cell(rgb))
 
-    def cell_corners(self, low: Indices, fraction: Array) -> tuple[Indices, Array]:
-        """Corners (n, 8) of cells, with the trilinear weights (n, 8), which sum to 1,
-        of a result of `cell`.
+    def tetrahedra(self, low: Indices, fraction: Array) -> tuple[Indices, Array]:
+        """Corners (n, 4) of the tetrahedra of their cells in which colours lie, and the
+        weights (n, 4), which sum to 1, of a result of `cell`.
+
+        They lead from the lowest corner of the cell to the highest, along the axes in
+        the order of decreasing fractions; equal ones are in the order red, green, blue.
         """
-        # The weight of a corner is the product of t or 1 − t along the three axes.
-        along = np.ascontiguousarray(fraction.T)
-        r, g, b = np.stack([1 - along, along], axis=1)
-        weights = r[:, None, None] * g[None, :, None] * b[None, None, :]
-        weights = weights.reshape(8, -1)
-        corners = self.index(low)[:, None] + self.index(CORNERS)
-        return corners, np.ascontiguousarray(weights.T)
+        red, green, blue = self.index(np.eye(3, dtype=np.int64))
+        whole = red + green + blue
+        r, g, b = fraction.T
+        largest = np.where(
+            r >= g, np.where(r >= b, red, blue), np.where(g >= b, green, blue)
+        )
+        smallest = np.where(
+            r >= g, np.where(g >= b, blue, green), np.where(r >= b, blue, red)
+        )
+        path = [np.zeros_like(largest), largest, whole - smallest, whole + 0 * largest]
+        # The weights are 1 − t₁, t₁ − t₂, t₂ − t₃ and t₃ of fractions t₁ ≥ t₂ ≥ t₃.
+        falling = -np.sort(-fraction, axis=1)
+        weights = -np.diff(falling, axis=1, prepend=1, append=0)
+        return self.index(low)[:, None] + np.stack(path, axis=1), weights
+
+    def cell_corners(self, low: Indices) -> Indices:
+        """All corners (n, 8) of the cells with lowest corners at positions (n, 3)."""
+        return self.index(low)[:, None] + self.index(CORNERS)
+
+    def needed(self, rgb: Array, margin: float) -> tuple[Mask, Mask]:
+        """Cells of linear RGB (n, 3) and of colours within a margin, and the corners of
+        their tetrahedra.
+        """
+        cells = np.zeros(self.size, dtype=bool)
+        points = np.zeros(self.size, dtype=bool)
+        first = self.cell(rgb - margin)[0]
+        last = self.cell(rgb + margin)[0]
+        for side in CORNERS:
+            # Few colours are so near to a face that they have more than one cell.
+            rows = np.flatnonzero(((first != last) | (side == 0)).all(axis=1))
+            low = np.where(side == 1, last[rows], first[rows])
+            cells[self.index(low)] = True
+            start = self.nodes[low]
+            size = self.nodes[low + 1] - start
+            least, most = (
+                np.clip((rgb[rows] + reach - start) / size, 0, 1)
+                for reach in (-margin, margin)
+            )
+            room = corner_room(least, most)
+            points[self.cell_corners(low)[room >= 0]] = True
+        return cells, points
 
     def mask(self, points: Indices) -> Mask:
         """Set (dim³,) of nodes (k,)."""
@@ -170,9 +207,22 @@ class Lattice:
         return self.index(np.clip(position, 0, self.dim - 1)), inside
 
 
+def corner_room(least: Array, most: Array) -> Array:
+    """Smallest of the fractions (..., 3) of cells along the axes that lead to each
+    corner (..., 8), at most, less the largest of the others, at least.
+
+    That is the weight of a corner of `Lattice.tetrahedra`, if positive.
+    """
+    leads = CORNERS == 1
+    ahead = np.where(leads, most[..., None, :], 1).min(axis=-1)
+    behind = np.where(leads, 0, least[..., None, :]).max(axis=-1)
+    room: Array = ahead - behind
+    return room
+
+
 def weighted_sum(values: Values, points: Indices, weights: Array) -> Values:
-    """Sums (n, K) of rows (n, 8) of a table (m, K), float32 or float64, by weights (n,
-    8).
+    """Sums (n, K) of rows (n, 4) of a table (m, K), float32 or float64, by weights (n,
+    4).
     """
     # The indices are valid. mode="clip" skips numpy's check and the copy that it needs.
     corners = values.take(points, axis=0, mode="clip")

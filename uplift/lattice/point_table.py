@@ -72,6 +72,11 @@ class PointTable:
         """
         return self.status != Status.ABSENT
 
+    def holds(self, points: Indices) -> Mask:
+        """Whether all nodes of each row (n, K) are present: (n,)."""
+        present: Mask = np.all(self.present[points], axis=1)
+        return present
+
     @property
     def columns(self) -> dict[str, NDArray[Any]]:
         """The arrays by name, without those that are None."""

@@ -37,12 +37,18 @@ CHUNKS = (1 << 16, 1 << 12)
 """Rows per chunk: two shapes, so that little is compiled; the smaller one is for short
 inputs.
 """
+ACCELERATOR_CHUNKS = (1 << 20, 1 << 12)
+"""The same for an accelerator, which waits at the start and end of each chunk."""
 
 
 @compiled
 def _clipped(grid: Grid, rgb: jax.Array) -> jax.Array:
     """Interpolate values (n, N), float32, at linear RGB (n, 3), float64 in [0, 1]."""
     return jnp.clip(interpolate(grid, rgb), grid.limits[0], grid.limits[1])
+
+
+def _chunks() -> tuple[int, int]:
+    return CHUNKS if jax.default_backend() == "cpu" else ACCELERATOR_CHUNKS
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -84,7 +90,7 @@ class Sampler:
             width,
             np.float32,
             threads=self.threads,
-            block=CHUNKS[0],
+            block=_chunks()[0],
         )
 
     def __reduce__(self) -> tuple[Any, ...]:
@@ -104,7 +110,7 @@ class Sampler:
     def _chunk(self, rgb: NDArray[Any]) -> Floats:
         require_xla()
         colours = as_colours(rgb, self.sensor)
-        size = min(size for size in CHUNKS if size >= len(colours))
+        size = min(size for size in _chunks() if size >= len(colours))
         missing = size - len(colours)
         padded = np.pad(colours, ((0, missing), (0, 0))) if missing else colours
         with jax.enable_x64(True):
@@ -123,7 +129,7 @@ def spectra(
 ) -> Sampler:
     """Prepare a cube for reflectances in mode ``spectra``, accurate to 1e-6.
 
-    The table takes 4 · dim³ · N bytes. A colour reads eight of its rows (32 · N bytes),
+    The table takes 4 · dim³ · N bytes. A colour reads four of its rows (16 · N bytes),
     in an entry box one more.
 
     Parameters

@@ -241,10 +241,10 @@ class Cube:
             True where it can.
         """
         colours = blocks.as_colours(rgb, self.data.sensor)
-        if self.data.complete_cells is None:
+        if not self.data.is_sparse:
             return np.ones(colours.shape[:-1], dtype=bool)
-        cells = self.data.entry_boxes.cell(colours.reshape(-1, 3))
-        return self.data.complete_cells[cells].reshape(colours.shape[:-1])
+        points = self.data.entry_boxes.nodes(colours.reshape(-1, 3)).points
+        return self.data.points.holds(points).reshape(colours.shape[:-1])
 
     def fill_missing(
         self,

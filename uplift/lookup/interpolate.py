@@ -2,7 +2,7 @@
 (docs/mathematics.md, 8). Needs numpy only.
 
 spectra   weighted spectra of the nodes; exact colours, as RGB is linear in the spectrum
-moments   weighted coefficients; one reconstruction instead of eight
+moments   weighted coefficients; one reconstruction instead of four
 refined   ``moments``, then minimum-norm steps to the exact colour (section 5)
 nearest   the spectrum of the node of largest weight, of another colour
 
@@ -42,10 +42,10 @@ def around(data: CubeData, rgb: Array) -> Nodes:
     """Return the nodes around linear RGB (n, 3) in [0, 1]; `ColourError` if a sparse
     cube lacks one of them.
     """
-    low, fraction, hits = data.entry_boxes.locate(rgb)
-    if data.complete_cells is not None:
-        require_covered(data.complete_cells[data.lattice.index(low)], rgb)
-    return Nodes(*data.lattice.cell_corners(low, fraction), hits)
+    nodes = data.entry_boxes.nodes(rgb)
+    if data.is_sparse:
+        require_covered(data.points.holds(nodes.points), rgb)
+    return nodes
 
 
 def require_covered(covered: Mask, rgb: Array) -> None:
@@ -95,7 +95,7 @@ def mixed_spectra(data: CubeData, rgb: Array, wavelengths: Array) -> Array:
     # Each node is evaluated once, although neighbouring colours share nodes.
     points, row = np.unique(nodes.points, return_inverse=True)
     values = evaluate(data.model, data.smoothed_multipliers(points), wavelengths)
-    # g = Σ w g_i has the colour W g = Σ w W g_i = Σ w r_i = x, as trilinear weights
+    # g = Σ w g_i has the colour W g = Σ w W g_i = Σ w r_i = x, as the weights
     # reproduce x.
     lattice = weighted_sum(values, row.reshape(nodes.points.shape), nodes.weights)
     return _mix_entries(data, nodes, lattice, wavelengths)

@@ -6,7 +6,6 @@ the geometry of the lattice have one type, values and weights another; float32 f
 moves colours by rounding, in small entry boxes visibly so.
 """
 
-from itertools import product
 from typing import Any, NamedTuple
 
 import jax
@@ -83,7 +82,7 @@ def interpolate(grid: Grid, rgb: jax.Array) -> jax.Array:
     """Interpolate values (n, N) at linear RGB (n, 3) in [0, 1] of the type of the
     nodes.
     """
-    return _with_entries(grid, rgb) if len(grid.candidates) else _trilinear(grid, rgb)
+    return _with_entries(grid, rgb) if len(grid.candidates) else _tetrahedral(grid, rgb)
 
 
 def evaluated_cells(grid: Grid, rgb: jax.Array) -> jax.Array:
@@ -116,9 +115,9 @@ def _with_entries(grid: Grid, rgb: jax.Array) -> jax.Array:
     (`uplift.lattice.entry_boxes`).
     """
     exit_rgb, entry, weight = _box_hits(grid, rgb)
-    return weight[:, None] * _trilinear(grid, exit_rgb) + (1 - weight)[:, None] * _rows(
-        grid.atlas, entry
-    )
+    return weight[:, None] * _tetrahedral(grid, exit_rgb) + (1 - weight)[
+        :, None
+    ] * _rows(grid.atlas, entry)
 
 
 def _box_hits(grid: Grid, rgb: jax.Array) -> tuple[jax.Array, jax.Array, jax.Array]:
@@ -152,16 +151,40 @@ def _box_hits(grid: Grid, rgb: jax.Array) -> tuple[jax.Array, jax.Array, jax.Arr
     return exit_rgb, entry, weight.astype(grid.atlas.dtype)
 
 
-def _trilinear(grid: Grid, rgb: jax.Array) -> jax.Array:
+def _tetrahedral(grid: Grid, rgb: jax.Array) -> jax.Array:
+    """Σ over the corners of `Lattice.tetrahedra` of their weights times their
+    values.
+    """
     low = _cell(grid, rgb)
     start = _rows(grid.nodes, low)
-    # Σ over the corners of the product of t or 1 − t along the axes, times their values
     along = (rgb - start) / (_rows(grid.nodes, low + 1) - start)
-    along = along.astype(grid.lattice.dtype)
-    sides = jnp.stack([1 - along, along])
+    fractions = along.astype(grid.lattice.dtype).T
+    dim = len(grid.nodes)
+    first, second, third = _by_falling(fractions, fractions)
+    one, next_, last = _by_falling(fractions, (dim * dim, dim, 1))
+    corner = _number(grid, low)
+    corners = (corner, corner + one, corner + one + next_, corner + one + next_ + last)
+    weights = (1 - first, first - second, second - third, third)
     total = jnp.zeros((len(rgb), grid.lattice.shape[1]), dtype=grid.lattice.dtype)
-    for r, g, b in product((0, 1), repeat=3):
-        weight = sides[r, :, 0] * sides[g, :, 1] * sides[b, :, 2]
-        corner = _number(grid, low + jnp.array([r, g, b], dtype=jnp.int32))
-        total += weight[:, None] * _rows(grid.lattice, corner)
+    for place, weight in zip(corners, weights, strict=True):
+        total += weight[:, None] * _rows(grid.lattice, place)
     return total
+
+
+def _by_falling(fractions: jax.Array, values: Any) -> tuple[jax.Array, ...]:
+    """Values of red, green and blue in the order of falling fractions (3, n).
+
+    Conditions keep the derivatives of one tetrahedron where fractions are equal.
+    """
+    r, g, b = fractions
+    red, green, blue = values
+    where = jnp.where
+    return (
+        where(r >= g, where(r >= b, red, blue), where(g >= b, green, blue)),
+        where(
+            r >= g,
+            where(g >= b, green, where(r >= b, blue, red)),
+            where(r >= b, red, where(g >= b, blue, green)),
+        ),
+        where(r >= g, where(g >= b, blue, green), where(r >= b, blue, red)),
+    )

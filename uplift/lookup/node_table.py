@@ -45,7 +45,7 @@ class NodeTable:
     ) -> "NodeTable":
         """Make a table of a type from values (m, K) of the present nodes."""
         lattice = points.astype(dtype, copy=False)
-        if data.complete_cells is not None:
+        if data.is_sparse:
             lattice = np.full((data.lattice.size, points.shape[1]), np.nan, dtype)
             lattice[data.points.present] = points
         entries = atlas.astype(dtype, copy=False)

@@ -200,8 +200,8 @@ def evaluate(traced: TraceableCube, rgb: ArrayLike) -> jax.Array:
     in JAX.
 
     The function is pure and piecewise smooth: its derivatives change at the faces of
-    cells and entry boxes, and in a box on the rays from its entry to its edges. There
-    they are those of one side, or between both.
+    tetrahedra and entry boxes, and in a box on the rays from its entry to its edges.
+    There they are those of one side, or between both.
 
     Nothing is raised for values. Components of colours outside [0, 1] are clamped, and
     have no gradient; at exactly 0 and 1 it is that of the inside. A colour with NaN has

@@ -2,12 +2,15 @@
 spots under other lights, and are smoothed (docs/mathematics.md, 8).
 """
 
+from collections.abc import Sequence
+from typing import NamedTuple
+
 import numpy as np
 
 from uplift.colorimetry import observer
 from uplift.colorimetry.delta_e import delta_e_spectra
-from uplift.colorimetry.sensor import Light
-from uplift.common.arrays import Array, Indices
+from uplift.colorimetry.sensor import Light, Sensor
+from uplift.common.arrays import Array, Indices, Mask
 from uplift.common.errors import UpliftWarning, warn
 from uplift.common.text import pluralise
 from uplift.fit.problem import Problem
@@ -24,12 +27,23 @@ from uplift.pipeline.entries import (
 
 SPIKY = "HP1"
 """Light that is added to those of the build: materials of one colour differ most."""
-LARGEST_STEP = 0.8
+LARGEST_STEP = 0.92
 """ΔE00 by which the step of an 8-bit code between an entry and a face of its box may
 exceed the step under the light of the build.
 """
+ROUNDS = 3
+"""Of finding the share that an entry keeps: the lattice around has steps too."""
 DIRECTIONS = np.concatenate([2 * CORNERS - 1, np.eye(3), -np.eye(3)])
-"""(14, 3) from an entry to the corners and the faces of its box."""
+"""(14, 3) ramps from an entry: of all channels up or down, and of each."""
+
+
+class Exit(NamedTuple):
+    """Where ramps leave the boxes of k entries."""
+
+    rgb: Array
+    """(k, 3) linear RGB."""
+    codes: Array
+    """(k, 1) 8-bit codes from the entry, at least 1."""
 
 
 def smooth_spots(
@@ -40,22 +54,27 @@ def smooth_spots(
     """
     # Looks are wishes for one colour, and not evidence of a material.
     rows = np.flatnonzero(boxes.half_width[: constraints.measured_count] > 0)
-    rows = rows[_are_known(boxes, points, rows)]
-    steps = _steepest(problem, constraints, boxes, points, rows)
-    spots = steps > LARGEST_STEP
+    exits = _exits(problem.sensor, boxes, rows)
+    known = _are_known(exits, boxes, points)
+    rows = rows[known]
+    exits = [Exit(place.rgb[known], place.codes[known]) for place in exits]
+    spectra = constraints.spectra(problem.model)
+    own = spectra.reflectance(rows, problem.sensor.wavelengths)
+    around = _lattice_spectra(problem, boxes, points, boxes.rgb[rows])
+    reached = [_lattice_spectra(problem, boxes, points, place.rgb) for place in exits]
+    answers, share = own, np.ones((len(rows), 1))
+    for _ in range(ROUNDS):
+        steps = _steepest(problem, answers, exits, reached)
+        share /= np.maximum(steps / LARGEST_STEP, 1)[:, None]
+        answers = share * own + (1 - share) * around
+    spots = share[:, 0] < 1
     rows = rows[spots]
     if not rows.size:
         return constraints, {}
-    share = LARGEST_STEP / steps[spots]
-    weight = share[:, None]
-    own = _own_spectra(problem, constraints, rows)
-    around = _lattice_spectra(problem, boxes, points, boxes.rgb[rows])
     names = tuple(constraints.names[row] for row in rows)
-    goals = MeasuredEntries(
-        names, boxes.rgb[rows], weight * own + (1 - weight) * around
-    )
+    goals = MeasuredEntries(names, boxes.rgb[rows], answers[spots])
     smoothed = fit_constraints(problem, constraints.entry_model, goals)
-    shares = dict(zip(names, share.tolist(), strict=True))
+    shares = dict(zip(names, share[spots, 0].tolist(), strict=True))
     return replaced(problem, constraints, rows, smoothed), shares
 
 
@@ -82,58 +101,46 @@ def warn_of_spots(shares: dict[str, float]) -> None:
     warn(UpliftWarning(problem, code="entry-smoothed", hint=hint))
 
 
-def _own_spectra(problem: Problem, constraints: Constraints, rows: Indices) -> Array:
-    """Spectra (k, N) that answer the colours of entries (k,)."""
-    spectra = constraints.spectra(problem.model)
-    return spectra.reflectance(rows, problem.sensor.wavelengths)
-
-
-def _are_known(boxes: EntryBoxes, points: PointTable, rows: Indices) -> Array:
-    """Whether the nodes that the boxes of entries (k,) need have spectra: all of them,
+def _are_known(exits: Sequence[Exit], boxes: EntryBoxes, points: PointTable) -> Mask:
+    """Whether the nodes that the boxes of entries need have spectra (k,): all of them,
     unless the cube was built for a scene.
     """
-    known = np.ones(len(rows), dtype=bool)
-    if not points.present.all():
-        for exit_rgb in _exits(boxes, rows):
-            corners, _ = boxes.lattice.corners(exit_rgb)
-            known &= points.present[corners].all(axis=1)
-    return known
+    corners = [boxes.lattice.corners(place.rgb)[0] for place in exits]
+    return points.holds(np.concatenate(corners, axis=1))
 
 
-def _exits(boxes: EntryBoxes, rows: Indices) -> list[Array]:
-    """Linear RGB (k, 3) at which boxes are left in each of `DIRECTIONS`."""
-    low, high = (np.clip(face[rows], 0, 1) for face in boxes.faces)
-    centre = boxes.rgb[rows]
-    return [
-        np.where(direction > 0, high, np.where(direction < 0, low, centre))
-        for direction in DIRECTIONS
-    ]
+def _exits(sensor: Sensor, boxes: EntryBoxes, rows: Indices) -> list[Exit]:
+    """Where ramps through entries (k,) in each of `DIRECTIONS` leave their boxes."""
+    codes = np.arange(len(sensor.decoding))
+    centre, low, high = (
+        np.interp(np.clip(rgb[rows], 0, 1), sensor.decoding, codes)
+        for rgb in (boxes.rgb, *boxes.faces)
+    )
+    exits = []
+    for direction in DIRECTIONS:
+        room = np.where(direction > 0, high - centre, centre - low)
+        count = np.where(direction == 0, np.inf, room).min(axis=1)[:, None]
+        rgb = np.interp(centre + direction * count, codes, sensor.decoding)
+        exits.append(Exit(rgb, np.maximum(count, 1)))
+    return exits
 
 
 def _steepest(
-    problem: Problem,
-    constraints: Constraints,
-    boxes: EntryBoxes,
-    points: PointTable,
-    rows: Indices,
+    problem: Problem, own: Array, exits: Sequence[Exit], answers: Sequence[Array]
 ) -> Array:
-    """Largest ΔE00 (k,) of the step of a code in the boxes of entries, less that under
-    the light of the build.
+    """Largest ΔE00 (k,) of the step of a code between entries with spectra (k, N) and
+    those of the lattice at exits, less that under the light of the build.
     """
-    sensor = problem.sensor
-    own = _own_spectra(problem, constraints, rows)
-    codes = np.arange(len(sensor.decoding))
-    centre = np.interp(boxes.rgb[rows], sensor.decoding, codes)
-    steepest = np.zeros(len(rows))
+    steepest = np.zeros(len(own))
     lights = scene_lights(problem)
-    for exit_rgb in _exits(boxes, rows):
-        passed = np.abs(np.interp(exit_rgb, sensor.decoding, codes) - centre)
-        count = np.maximum(passed.max(axis=1), 1)
-        answers = _lattice_spectra(problem, boxes, points, exit_rgb)
-        expected = delta_e_spectra(sensor.light, own, answers)
-        for light in lights:
-            excess = delta_e_spectra(light, own, answers) - expected
-            steepest = np.maximum(steepest, excess / count)
+    for place, answer in zip(exits, answers, strict=True):
+        # Mixtures are linear on the way: the first step is like all, and the last.
+        step = (answer - own) / place.codes
+        for before, after in ((own, own + step), (answer - step, answer)):
+            expected = delta_e_spectra(problem.sensor.light, before, after)
+            for light in lights:
+                excess = delta_e_spectra(light, before, after) - expected
+                steepest = np.maximum(steepest, excess)
     return steepest
 
 

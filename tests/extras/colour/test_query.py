@@ -38,16 +38,13 @@ def xyz(reflectance):
 
 def test_cell_and_statuses_are_those_around_the_colour(small_cube):
     data = small_cube.data
-    grid = data.points.status.reshape(8, 8, 8)
     nodes = data.lattice.nodes
     for answer in query(small_cube, np.random.default_rng(5).random((100, 3))):
         low = np.array(answer.cell)
         assert (nodes[low] <= answer.rgb).all()
         assert (answer.rgb <= nodes[low + 1]).all()
-        r, g, b = low
-        assert_array_equal(
-            answer.statuses, np.unique(grid[r : r + 2, g : g + 2, b : b + 2])
-        )
+        around, _ = data.lattice.corners(answer.rgb[None])
+        assert_array_equal(answer.statuses, np.unique(data.points.status[around]))
 
 
 def test_entries_are_found_at_their_nearest_codes_and_not_two_codes_away(small_cube):

@@ -12,13 +12,13 @@ from uplift.lookup.cube import Cube, load
 from uplift.models.moments import Moments
 
 
-@pytest.fixture(scope="session", params=["vision", "colour"])
-def warped_cube(small_cube, request) -> Cube:
+@pytest.fixture(scope="session")
+def warped_cube(small_cube) -> Cube:
     """Cube of five of nine moments, reinterpreted with another wavelength range and
     warp.
     """
     data = small_cube.data
-    model = Moments(5, 400, 700, request.param)
+    model = Moments(5, 400, 700, "colour")
     coefficients = data.atlas.coefficients[:, :5]
     atlas = replace(
         data.atlas, coefficients=coefficients, spectra=EntrySpectra(model, coefficients)

@@ -46,8 +46,11 @@ extern "C" __global__ void lookup(
     const float *table, const float *rgb, const float *wavelengths, float *found)
 {{
     int at = blockIdx.x * blockDim.x + threadIdx.x;
-    cube_reflectances(table, rgb + 3 * at, wavelengths, found + 4 * at);
+    cube_reflectances(table, rgb + 3 * at, wavelengths, found + CUBE_WIDTH * at);
 }}
+"""
+VULKAN_MAIN = """layout(location = 0) out vec4 found;
+void main() { found = cube_reflectances(vec3(0.5), vec4(450, 500, 550, 600)); }
 """
 PIXEL = """{code}
 StructuredBuffer<float4> colours : register(t1);
@@ -145,16 +148,31 @@ def cuda(path, rgb, wavelengths, form="file"):
     )
 
 
-def ptx(path):
-    """Compile to PTX, the assembly language of graphics processors. Returns it."""
+def registers(path, width):
+    """Compile for a graphics processor, for ``width`` wavelengths. Return the report of
+    the assembler on registers.
+    """
     need(NVCC)
     path.with_suffix(".cu").write_text(KERNEL.format(header=path.name))
-    options = ("-ptx", "-Werror", "all-warnings")
-    subprocess.run(
-        ["nvcc", *options, path.with_suffix(".cu"), "-o", path.with_suffix(".ptx")],
-        check=True,
+    command = (
+        f"nvcc -cubin -arch=sm_90 -DCUBE_WIDTH={width} -Xptxas -v -Werror all-warnings"
     )
-    return path.with_suffix(".ptx").read_text()
+    words = [
+        *command.split(),
+        path.with_suffix(".cu"),
+        "-o",
+        path.with_suffix(".cubin"),
+    ]
+    done = subprocess.run(words, check=True, capture_output=True, text=True)
+    return done.stderr
+
+
+def compile_vulkan(path, macros):
+    """Compile a shader as it is written to SPIR-V, by GLSL 4.50. Return it as text."""
+    need(GLSLANG)
+    code = "\n".join(["#version 450", *macros, path.read_text(), VULKAN_MAIN])
+    (path.parent / "main.frag").write_text(code)
+    return output_of("glslangValidator", "-H", "-V", "main.frag", cwd=path.parent)
 
 
 def _compiled(path, rgb, wavelengths, compiler, call, load):

@@ -219,15 +219,6 @@ def test_round_trips_of_pbrt(small_cube, space, light, low, high, also):
     assert np.abs(pbrt_rgb(space, light, spectra_of(data, rgb)) - rgb).max() < 0.01
 
 
-def test_greys_have_constant_spectra(small_cube):
-    levels = np.repeat([GREYS[1:]], 3, axis=0).T
-    assert_allclose(
-        spectra_of(small_cube.data, levels),
-        np.repeat(levels[:, :1], 471, axis=1),
-        atol=1e-3,
-    )
-
-
 def test_dark_colours_are_dark_at_every_wavelength(small_cube):
     spectra = spectra_of(small_cube.data, np.array([DARK_RED]))
     assert spectra.max() < 0.05

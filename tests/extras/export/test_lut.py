@@ -37,7 +37,7 @@ def test_a_table_of_codes_holds_the_relit_colours(small_cube, tmp_path):
     write_lut(small_cube, LIGHT, tmp_path / "relight.cube", res=9)
     right = expected(small_cube, decode(NODES))
     inside = (right >= 0) & (right <= 1)
-    assert inside.mean() > 0.9
+    assert inside.mean() > 0.85
     assert_allclose(
         apply(tmp_path / "relight.cube", NODES)[inside],
         encode(right)[inside],

@@ -39,10 +39,6 @@ def test_without_an_atlas_they_are_those_of_unknown_families(unaware):
     assert delta_e_spectra(light("A"), known, families.measured).mean() < expected.mean
 
 
-def test_under_the_light_of_the_cube_colours_are_right(unaware):
-    assert material_error(unaware, "D65").bound < 0.05
-
-
 def test_a_cube_without_left_out_materials_states_nothing(unaware):
     earlier = Cube(replace(unaware.data, families=None))
     assert material_error(earlier, "A") is None

@@ -152,14 +152,6 @@ def test_what_a_cube_is_opened_from(evaluate):
     assert results == damaged * 4 + unread * 4 + other * 2
 
 
-def test_numbers_that_rounding_moved_are_those_at_the_ends(evaluate):
-    found = evaluate(
-        """[[1.0000001, -1e-7, 0.5], [1, 0, 0.5]].map(rgb =>
-        [...cube.reflectances(rgb, [450, 550])])"""
-    )
-    assert found[0] == found[1]
-
-
 def test_in_a_browser(repository, small_cube):
     need(CHROMIUM)
     content = (repository / "cubes" / "moments-8-macbeth.uplift").read_bytes()

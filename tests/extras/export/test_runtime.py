@@ -5,7 +5,6 @@ the header is composed of the source of exported programs.
 import subprocess
 from collections.abc import Callable
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -19,10 +18,9 @@ from tests.extras.export.run_module import module_answers, module_result
 from tests.extras.export.run_program import STRICT
 from tests.extras.export.test_programs import OUTSIDE, colours
 from tests.extras.looks.test_looks import LOOKS
-from tests.helpers import quiet_build, raises
+from tests.helpers import quiet_build
 from tests.parts import CC, CLANG, CXX, need
-from uplift.common.errors import OutputError
-from uplift.extras.export.runtime import compose_header, write_header
+from uplift.extras.export.runtime import write_header
 from uplift.lookup.cube import Cube
 from uplift.lookup.interpolate import fading_share, is_inexact, node_errors
 
@@ -63,8 +61,7 @@ def of_scene(cube: Cube, count: int) -> Cube:
     """Keep the nodes that a few dark colours need."""
     data = cube.data
     rgb = np.random.default_rng(1).random((count, 3)) ** 2
-    cells = data.lattice.mask(data.lattice.index(data.lattice.cell(rgb)[0]))
-    points = np.flatnonzero(data.entry_boxes.required_points(cells))
+    points = np.flatnonzero(data.entry_boxes.required_points([rgb]))
     return Cube(replace(data, points=data.points.restricted_to(points)))
 
 
@@ -102,21 +99,6 @@ def check(
     # These limit errors by the possible ones, which programs do not know.
     expected = node_errors(data, rgb)
     assert_allclose(found.errors[covered], expected, rtol=1e-5, atol=1e-5)
-
-
-def test_lines_are_short_and_words_are_filled_in():
-    header = compose_header()
-    assert max(map(len, header.splitlines())) < 180
-    assert "$" not in header
-    assert header.isascii()
-
-
-def test_it_is_written_and_not_over_another_file(tmp_path):
-    path = tmp_path / "uplift.h"
-    write_header(path)
-    assert path.read_text() == compose_header()
-    with raises(OutputError, "file-exists"):
-        write_header(path)
 
 
 both_read = pytest.mark.parametrize(
@@ -262,11 +244,6 @@ def test_damaged_files_are_refused(repository, tmp_path, open_file):
     ):
         path.write_bytes(damaged)
         assert open_file(path) == result
-
-
-def test_what_is_no_file_is_refused(tmp_path):
-    assert open_result(Path(tmp_path, "missing")) == 1
-    assert open_result(tmp_path) == 1
 
 
 THREADS = r"""

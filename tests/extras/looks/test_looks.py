@@ -27,7 +27,7 @@ IMPOSSIBLE = Look("#4060a0", {"A": "#5060a0"}, name="dusk")
 @pytest.fixture(scope="module")
 def cubes():
     """The ColorChecker without and with looks."""
-    return quiet_build(MACBETH, dim=6), quiet_build(MACBETH, dim=6, looks=LOOKS)
+    return quiet_build(MACBETH, dim=8), quiet_build(MACBETH, dim=8, looks=LOOKS)
 
 
 def coded(sensor, colour):

@@ -187,9 +187,9 @@ def test_colours_that_no_spectrum_of_the_lattice_has_have_no_answer(judged):
 
 
 def test_standard_errors_of_sparse_cubes_are_those_of_nodes_that_lookups_reach(
-    small_cube,
+    plain_cube,
 ):
-    data = small_cube.data
+    data = plain_cube.data
     corners = data.lattice.corners(np.full((1, 3), 0.3))[0][0]
     points = data.points.restricted_to(corners)
     sparse = Cube(dataclasses.replace(data, points=points))

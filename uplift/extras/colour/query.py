@@ -53,7 +53,7 @@ class QueryBlock:
     cell: Indices
     """(n, 3) position of the lowest corner of the cell along the axes."""
     corner_statuses: NDArray[np.uint8]
-    """(n, 8) statuses of the corners of the cell."""
+    """(n, 4) statuses of the nodes around the colour."""
     entry: list[str | None]
     """(n,) atlas entry whose 8-bit codes are those of the colour, within
     `CODE_TOLERANCE`.
@@ -90,11 +90,11 @@ class QueryBlock:
 
     @cached_property
     def statuses(self) -> list[tuple[Status, ...]]:
-        """(n,) different statuses of the corners of the cell."""
-        keys = self.corner_statuses.view("u8")[:, 0].tolist()
+        """(n,) different statuses of the nodes around the colours."""
+        keys = self.corner_statuses.view("u4")[:, 0].tolist()
         # np.unique without counts imports numpy.ma, which takes time.
         distinct = {
-            key: tuple(map(Status, sorted(set(key.to_bytes(8, sys.byteorder)))))
+            key: tuple(map(Status, sorted(set(key.to_bytes(4, sys.byteorder)))))
             for key in set(keys)
         }
         return [distinct[key] for key in keys]
@@ -211,7 +211,7 @@ class _Lookup:
 
         is_stated = self.answering or data.points.standard_error is not None
         low, fraction = data.lattice.cell(rgb)
-        corners, _ = data.lattice.cell_corners(low, fraction)
+        corners, _ = data.lattice.tetrahedra(low, fraction)
         return QueryBlock(
             rgb=answered,
             requested_rgb=requested,

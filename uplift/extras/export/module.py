@@ -15,7 +15,7 @@ from string import Template
 from uplift.common.arrays import StrPath
 from uplift.common.files import write_text
 from uplift.cube.file import VERSION
-from uplift.extras.export.runtime import HEADER, SPARSE, compose_header
+from uplift.extras.export.runtime import HEADER, compose_header
 from uplift.extras.export.source import read_source
 
 MODULE = "uplift.js"
@@ -49,7 +49,7 @@ def module_sources() -> dict[str, str]:
     """Return the files that are compiled, by name."""
     library = read_source("module/libc.h")
     sources = dict.fromkeys(LIBRARY, library)
-    sources[HEADER] = compose_header(SPARSE)
+    sources[HEADER] = compose_header()
     sources[SOURCE] = read_source(f"module/{SOURCE}")
     return sources
 

@@ -42,6 +42,7 @@ from uplift.extras.export.source import (
     literal,
     name_program,
     read_source,
+    select,
     unroll,
 )
 from uplift.extras.files.outputs import check_outputs
@@ -57,7 +58,8 @@ class Language:
     one call.
 
     The table is, by ``forms``, the default first: in the program, a ``"header"``, or in
-    a ``"file"`` of numbers. ``vector`` is what types such as ``vec3`` begin with.
+    a ``"file"`` of numbers. ``vector`` is what types such as ``vec3`` begin with, and
+    ``rows`` the source that states how rows of the table are read.
     """
 
     suffix: str
@@ -65,10 +67,11 @@ class Language:
     width: int = 4
     forms: tuple[str, ...] = ("file",)
     vector: str = ""
+    rows: str = "copies.c"
 
 
 LANGUAGES = {
-    "c": Language(".h", ".c", 16, ("header", "file")),
+    "c": Language(".h", ".c", 16, ("header", "file"), rows="rows.c"),
     "cuda": Language(".cuh", ".cuh"),
     "glsl": Language(".glsl", ".glsl", vector="vec"),
     "hlsl": Language(".hlsl", ".glsl", vector="float"),
@@ -78,7 +81,6 @@ RUNTIME_WORDS = {
     "UP_READS_CUBE ": "",
     "UP_CUBE ": "",
     "UP_ROW_OF(index)": "index",
-    "UP_SELDOM ": "UP_FUNCTION ",
     "UP_SAMPLE_ROOM": "UP_SAMPLES",
 }
 """Words of the source that are macros in the reader of cube files, and what programs
@@ -189,13 +191,14 @@ def compose(
     language = LANGUAGES[style]
     image = table.image()
     overview, calls = read_calls(kind, language.calls)
-    lookup = read_source(f"{kind}.c") + calls
+    sources = (language.rows, "locate.c", "cube.c") if kind == "cube" else ("lights.c",)
+    lookup = "".join(map(read_source, sources)) + calls
     for word, plain in RUNTIME_WORDS.items():
         lookup = lookup.replace(word, plain)
     constants = {f"UP_{key}": value for key, value in table.constants.items()}
     parts = {
         "overview": overview.replace("UP_VEC", language.vector),
-        "program": unroll(lookup, constants).rstrip("\n"),
+        "program": unroll(select(lookup, constants), constants).rstrip("\n"),
         "table": read_source(f"table_{form}.c"),
     }
     text = read_source(f"{kind}_heading.c") + read_source(f"{style}{language.suffix}")

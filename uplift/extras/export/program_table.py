@@ -25,6 +25,12 @@ COLUMNS = 2048
 """Texels in a row of the table as an image: every graphics card that can run the
 program has textures of this width.
 """
+PLACE = 5
+"""Numbers of the place of a colour: weights of four nodes, and that of the lattice."""
+MOVED_PLACE = 10
+"""The same where answers may be moved: how far, from where, and by which share."""
+WARP_NUMBERS = 6
+"""Numbers of the two terms of a warp."""
 MOVES = {
     "LEAST": LEAST,
     "SLOPE": SLOPE,
@@ -54,7 +60,7 @@ def check_complete(data: CubeData, name: str) -> None:
     """Raise `OptionError` for a cube that was built for a scene: programs, and pages
     with one, need all nodes.
     """
-    if data.complete_cells is not None:
+    if data.is_sparse:
         problem = (
             f"{name} needs all nodes, but the cube was built for the colours of a scene"
         )
@@ -85,7 +91,7 @@ def make_table(data: CubeData, mode: str) -> Table:
     rows[:size, model.count] = tags
     sections: dict[str, Values] = {
         "ENTRIES": data.atlas.spectra.multipliers,
-        "NODES": data.lattice.nodes.astype(np.float32),
+        "CELLS": _cells(data.lattice.nodes.astype(np.float32)),
         "BINS": _bins(data.lattice.nodes.astype(np.float32)),
         "LISTS": lists,
         "BOXES": _boxes(data.entry_boxes),
@@ -101,7 +107,7 @@ def make_table(data: CubeData, mode: str) -> Table:
         "BIN_COUNT": BIN_COUNT,
         "SPECTRA": int(mode == "spectra"),
         "INEXACT": int(data.inexact_cells is not None),
-        "PLACE": 4 if data.inexact_cells is None else 9,
+        "PLACE": PLACE if data.inexact_cells is None else MOVED_PLACE,
         **how,
         **offsets,
         **model_constants(model),
@@ -123,13 +129,32 @@ def moved_cells(data: CubeData, mode: str) -> Mask:
 
 
 def concatenate(sections: Mapping[str, Values]) -> tuple[Floats, dict[str, int]]:
-    """Return sections one after the other, filled up with zeros to whole texels, and
-    the index where each begins.
+    """Return sections one after the other, each filled up with zeros to whole texels,
+    and the index where each begins.
     """
-    ends = np.cumsum([section.size for section in sections.values()]).tolist()
-    parts = [section.ravel() for section in sections.values()]
-    numbers = np.concatenate([*parts, np.zeros(-ends[-1] % TEXEL)], dtype=np.float32)
+    parts = [_texels(section.ravel()) for section in sections.values()]
+    ends = np.cumsum([part.size for part in parts]).tolist()
+    numbers = np.concatenate(parts, dtype=np.float32)
     return numbers, dict(zip(sections, [0, *ends], strict=False))
+
+
+def _texels(numbers: Values) -> Values:
+    """Fill numbers up with zeros to whole texels."""
+    return np.pad(numbers, (0, -numbers.size % TEXEL))
+
+
+def _cells(nodes: Floats) -> Floats:
+    """Return the node below each cell of an axis, that above, 2 for the last cell, and
+    the reciprocal of the step, (dim - 1, 4).
+
+    Reciprocals are rounded up: a step times its reciprocal is not below 1.
+    """
+    step = np.diff(nodes)
+    inverse = np.float32(1) / step
+    next_one = np.nextafter(inverse, np.float32(np.inf))
+    inverse = np.where(step * inverse < 1, next_one, inverse)
+    above = np.append(nodes[1:-1], 2)
+    return np.stack([nodes[:-1], above, inverse, 0 * step], axis=-1)
 
 
 def _bins(nodes: Floats) -> Floats:
@@ -190,15 +215,15 @@ def _moving(data: CubeData) -> tuple[dict[str, Values], dict[str, Any]]:
 
 
 def _boxes(boxes: EntryBoxes) -> Floats:
-    """Return centres, the rest that they round off, and reciprocals of distances to the
-    faces, (E, 12); 0 for none.
+    """Return for each axis the centre, the rest that it rounds off, and reciprocals of
+    distances to the faces, (E, 3, 4); 0 for none.
     """
     low, high = boxes.faces
     below = _reciprocal(boxes.rgb - low)
     above = _reciprocal(high - boxes.rgb)
     centre = boxes.rgb.astype(np.float32)
     columns = (centre, boxes.rgb - centre, below, above)
-    return np.concatenate(columns, axis=1).astype(np.float32)
+    return np.stack(columns, axis=-1).astype(np.float32)
 
 
 def _reciprocal(room: Array) -> Array:
@@ -206,22 +231,24 @@ def _reciprocal(room: Array) -> Array:
 
 
 def model_constants(model: object) -> dict[str, float]:
-    """Return the model, its wavelength range in nm, and the start and reciprocal length
-    of the warped range.
+    """Return the model, its wavelength range in nm, the terms of its warp, and the
+    start and reciprocal length of the warped range.
     """
     if isinstance(model, Sigmoid):
-        return {"SIGMOIDS": 1, "START": model.start, "END": model.end}
+        return {"SIGMOIDS": 1, "START": model.start, "END": model.end} | _warp(())
     assert isinstance(model, Moments)
     low, high = warped(model.warp, np.array([model.start, model.end])).tolist()
-    terms = list(chain.from_iterable(WARPS[model.warp]))
-    warp = {}
-    if terms:
-        padded = (*terms, 0.0, 0.0, 0.0)[:6]
-        warp = {f"WARP_{number}": value for number, value in enumerate(padded)}
-    constants = {
+    return {
         "SIGMOIDS": 0,
-        "WARPED": int(bool(terms)),
         "START": model.start,
         "END": model.end,
+        "LOW": low,
+        "SCALE": 1 / (high - low),
+        **_warp(tuple(chain.from_iterable(WARPS[model.warp]))),
     }
-    return constants | warp | {"LOW": low, "SCALE": 1 / (high - low)}
+
+
+def _warp(terms: tuple[float, ...]) -> dict[str, float]:
+    padded = (*terms, *[0.0] * WARP_NUMBERS)[:WARP_NUMBERS]
+    words = {f"WARP_{number}": value for number, value in enumerate(padded)}
+    return {"WARPED": int(bool(terms))} | words

@@ -1,14 +1,14 @@
 """``uplift.h``: a header in C that reads cube files when a program runs.
 
-It is composed of the source of exported programs (`program`), included once for each
-number of coefficients, and of the reader of files in ``source/runtime/``.
+It is composed of the source of exported programs (`program`), once for each of a few
+numbers of coefficients, and of the reader of files in ``source/runtime/``.
 """
 
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from decimal import Decimal
-from itertools import chain, product
+from itertools import chain
 from pathlib import Path
 from string import Template
 from typing import Any
@@ -18,18 +18,25 @@ from uplift.common.files import write_text
 from uplift.cube.file import FEATURES, VERSION
 from uplift.cube.schema import ARRAYS
 from uplift.extras.export.program import LANGUAGES, read_calls
-from uplift.extras.export.program_table import MOVES, TEXEL
-from uplift.extras.export.source import literal, read_source
+from uplift.extras.export.program_table import MOVED_PLACE, MOVES, TEXEL
+from uplift.extras.export.source import (
+    literal,
+    name_program,
+    read_source,
+    select,
+    unroll,
+)
 from uplift.models.moments import MAX_COUNT, WARPS
 
 HEADER = "uplift.h"
 SAMPLES = 512
 """Most wavelengths of a sensor for which colours are moved."""
 COUNTS = (5, 9, MAX_COUNT)
-"""Numbers of moments for which the lookup is compiled."""
-WARPED_COUNTS = (5, MAX_COUNT)
-"""The same for phases that are not linear, where the basis takes most of the time."""
-SPARSE_COUNTS = (3, 9, MAX_COUNT)
+"""Numbers of moments for which the lookup is compiled, so that its loops are."""
+
+
+OWN = re.compile(r"^UP_(?:FUNCTION|EXPANDED|SELDOM) \w+ up_(\w+)\(", re.MULTILINE)
+"""A function that is defined for every kernel."""
 
 
 @dataclass(frozen=True)
@@ -39,56 +46,26 @@ class Kernel:
     """
 
     count: int
-    is_sigmoid: bool
-    is_warped: bool
-    is_inexact: bool
-    """Whether answers may be moved to their colours."""
-    is_sparse: bool = False
-    """Whether nodes may be absent, so that their rows must be found."""
+    is_sigmoid: bool = False
 
     @property
     def name(self) -> str:
-        words = ["uplift", "sigmoid" if self.is_sigmoid else f"moments_{self.count}"]
-        words += ["warped"] * self.is_warped
-        words += ["moved"] * self.is_inexact
-        words += ["sparse"] * self.is_sparse
-        return "_".join(words)
+        return "uplift_sigmoid" if self.is_sigmoid else f"uplift_moments_{self.count}"
 
     @property
-    def constants(self) -> dict[str, Any]:
+    def constants(self) -> dict[str, int]:
         """The constants of programs on which its code depends."""
         return {
-            "KERNEL": self.name,
-            "COUNT": self.count,
-            "ENTRY_COUNT": self.count if self.is_sigmoid else MAX_COUNT,
-            "STRIDE": self.count // TEXEL * TEXEL + TEXEL,
-            "SIGMOIDS": int(self.is_sigmoid),
-            "WARPED": int(self.is_warped),
-            "INEXACT": int(self.is_inexact),
-            "PLACE": 9 if self.is_inexact else 4,
-            "ROW_OF(index)": "uplift_row(cube, index)" if self.is_sparse else "(index)",
+            "UP_COUNT": self.count,
+            "UP_ENTRY_COUNT": self.count if self.is_sigmoid else MAX_COUNT,
+            "UP_STRIDE": self.count // TEXEL * TEXEL + TEXEL,
+            "UP_SIGMOIDS": int(self.is_sigmoid),
+            "UP_SPECTRA": 1,
+            "UP_INEXACT": 1,
         }
 
 
-PLAIN = [(count, False) for count in COUNTS]
-WARPED = [(count, True) for count in WARPED_COUNTS]
-MOMENTS = [
-    Kernel(count, is_sigmoid=False, is_warped=is_warped, is_inexact=is_inexact)
-    for (count, is_warped), is_inexact in product(PLAIN + WARPED, (False, True))
-]
-SIGMOIDS = [
-    Kernel(3, is_sigmoid=True, is_warped=False, is_inexact=is_inexact)
-    for is_inexact in (False, True)
-]
-SPARSE = [
-    replace(kernel, is_sparse=True)
-    for kernel in SIGMOIDS + MOMENTS
-    if kernel.is_inexact and kernel.count in SPARSE_COUNTS
-]
-"""Those of cubes of a scene need not be as fast, and also answer exact cells: they are
-enough for every cube.
-"""
-KERNELS = SIGMOIDS + MOMENTS + SPARSE
+KERNELS = (Kernel(3, is_sigmoid=True), *map(Kernel, COUNTS))
 READ = (
     "nodes",
     "points",
@@ -110,7 +87,7 @@ READ = (
 FIELDS = (
     "DIM",
     "ENTRIES",
-    "NODES",
+    "CELLS",
     "BINS",
     "LISTS",
     "BOXES",
@@ -149,25 +126,25 @@ def write_header(path: StrPath, *, force: bool = False) -> str:
     return f"reads cube files in C and C++, {len(text) / 1e3:.0f} kB"
 
 
-def compose_header(kernels: Sequence[Kernel] = KERNELS) -> str:
-    """Compose the header of its parts, with the lookups of some kernels."""
+def compose_header() -> str:
+    """Compose the header of its parts, with the lookups of all kernels."""
     words = {
         "format": VERSION,
         "samples": SAMPLES,
         "count": MAX_COUNT,
         "width": LANGUAGES["c"].width,
+        "place": MOVED_PLACE,
         "definitions": "\n".join(
             f"#define UP_{name} {literal(value)}" for name, value in MOVES.items()
         ),
         "fields": "\n".join(
             f"#define UP_{name} cube->{name.lower()}" for name in FIELDS
         ),
-        "inclusions": "\n".join(map(_inclusion, kernels)),
-        "kernels": ",".join(map(_kernel_row, kernels)),
-        "kernel": _kernel(),
+        "lookups": _location() + "".join(map(_lookup, KERNELS)),
+        "choices": ",".join(map(_choice, KERNELS)),
     }
     text = Template(read_source("runtime/uplift.h")).substitute(words | _reader_words())
-    return re.sub(r"\bUP_", "UPLIFT_", text)
+    return name_program(text, "uplift")
 
 
 def _reader_words() -> dict[str, Any]:
@@ -201,31 +178,29 @@ def _schema_row(name: str) -> str:
     return f'\n    {{"{name}", "{stored.shape}", {types}, {low}, {high}, {feature}}}'
 
 
-def _kernel_row(kernel: Kernel) -> str:
+def _choice(kernel: Kernel) -> str:
     """Return the row of a kernel in the list from which one is chosen."""
-    kinds = (
-        kernel.is_sigmoid,
-        kernel.is_warped,
-        kernel.is_inexact,
-        kernel.is_sparse,
-    )
-    text = ", ".join(map(str, [kernel.count, *map(int, kinds)]))
-    return f"\n        {{{text}, &{kernel.name}_functions}}"
+    kinds = f"{kernel.count}, {int(kernel.is_sigmoid)}"
+    return f"\n        {{{kinds}, {kernel.name}_reflectances_n}}"
 
 
-def _inclusion(kernel: Kernel) -> str:
-    """Return the lines by which the header includes itself for a kernel."""
-    lines = [f"#define UP_{key} {value}" for key, value in kernel.constants.items()]
-    return "\n".join(["", *lines, "#include UPLIFT_FILE"])
+def _location() -> str:
+    """Return the source that finds the nodes of a colour, which all kernels share."""
+    text = read_source("locate.c")
+    return text.replace("UP_STRIDE", "cube->stride").replace("UP_COUNT", "cube->tag")
 
 
-def _kernel() -> str:
-    """Return the lookup of exported programs, whose functions have the name of the
-    kernel.
+def _lookup(kernel: Kernel) -> str:
+    """Return the lookup of exported programs with the constants of a kernel, in whose
+    name its functions begin.
     """
     _, calls = read_calls("cube", ".c")
-    text = (read_source("cube.c") + calls).replace("up_number", "uplift_number")
-    return re.sub(r"\bup_(\w+)", r"UP_NAME(\1)", text)
+    text = select(read_source("cube.c") + calls, kernel.constants)
+    text = unroll(text, kernel.constants)
+    for name, value in kernel.constants.items():
+        text = re.sub(rf"\b{name}\b", str(value), text)
+    own = "|".join(OWN.findall(text))
+    return re.sub(rf"\bup_({own})\b", rf"{kernel.name}_\1", text)
 
 
 def _hash_words(primes: Sequence[int], degree: int) -> str:

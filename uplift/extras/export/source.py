@@ -9,6 +9,7 @@ from importlib.resources import files
 from typing import Any
 
 INCLUDE = re.compile(r'^#include "(.+)"\n', re.MULTILINE)
+CONDITION = re.compile(r"#if (?P<no>!?)(?P<name>\w+)$")
 LOOP = re.compile(
     r"^(?P<indent> *)UP_UNROLL\n *for \(int (?P<name>\w+) = (?P<start>.+); \w+ < "
     r"(?P<stop>.+); \+\+\w+\) "
@@ -54,6 +55,35 @@ def literal(value: float) -> str:
         return str(value)
     text = f"{value:.9g}"
     return f"{text}f" if {".", "e"} & set(text) else f"{text}.0f"
+
+
+def select(text: str, constants: dict[str, Any]) -> str:
+    """Keep the lines that ``#if NAME`` or ``#if !NAME`` of constants select; other
+    conditions stay.
+    """
+    kept: list[str] = []
+    open_ones: list[bool | None] = []  # of the conditions around a line; None stays
+    for line in text.splitlines(keepends=True):
+        condition = CONDITION.match(line)
+        if condition and condition["name"] in constants:
+            open_ones.append(
+                bool(constants[condition["name"]]) != bool(condition["no"])
+            )
+            continue
+        if line.startswith("#if"):
+            open_ones.append(None)
+        elif open_ones and open_ones[-1] is not None:
+            if line.startswith("#else"):
+                open_ones[-1] = not open_ones[-1]
+                continue
+            if line.startswith("#endif"):
+                open_ones.pop()
+                continue
+        elif line.startswith("#endif"):
+            open_ones.pop()
+        if False not in open_ones:
+            kept.append(line)
+    return re.sub("\n{3,}", "\n\n", "".join(kept))
 
 
 def unroll(text: str, constants: dict[str, Any]) -> str:

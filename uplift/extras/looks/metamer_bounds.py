@@ -135,7 +135,7 @@ def limit_errors(data: CubeData, light: Light, rgb: Array, errors: Array) -> Arr
     metamers under a light.
     """
     srgb = rgb @ conversion(data.sensor, SRGB).T
-    corners, weights = NODES.cell_corners(*NODES.cell(srgb.clip(0, 1)))
+    corners, weights = NODES.corners(srgb.clip(0, 1))
     nodes = _nodes(data.sensor, light)
     nodes.add(corners)
     metamers = np.einsum("nc,ncdk->ndk", weights, nodes.metamers[corners])
@@ -159,7 +159,7 @@ class NodeMetamers:
     known: Mask
 
     def add(self, corners: Indices) -> None:
-        """Compute the metamers at corners (n, 8)."""
+        """Compute the metamers at corners (n, 4)."""
         needed = np.zeros_like(self.known)
         needed[corners] = True
         missing = np.flatnonzero(needed & ~self.known)

@@ -137,7 +137,7 @@ def _heading(data: CubeData) -> str:
     model = data.model
     sensor = data.sensor
     facts = [f"{data.lattice.dim}³ nodes"]
-    if data.complete_cells is not None:
+    if data.is_sparse:
         facts = [f"{np.count_nonzero(data.points.present):,} of {facts[0]}"]
     facts += [
         f"{model.name}, {pluralise(model.count, 'coefficient')}",

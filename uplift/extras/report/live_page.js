@@ -18,23 +18,20 @@ uniform vec4 at[${GROUPS}], red_a[${GROUPS}], green_a[${GROUPS}], blue_a[${GROUP
 uniform vec4 red_b[${GROUPS}], green_b[${GROUPS}], blue_b[${GROUPS}];
 layout(location = 0) out vec4 first;
 layout(location = 1) out vec4 second;
+float reflectance(int number, float shape[CUBE_ROOM], float nm) {
+  if (number < CUBE_LATTICE) return cube_evaluate_at(shape, nm);
+  return cube_mix(0.0, number - CUBE_LATTICE, cube_abscissa(cube_warp(nm)), 0.5);
+}
 void main() {
   int number = int(gl_FragCoord.y) * ${ACROSS} + int(gl_FragCoord.x);
   first = second = vec4(0.0, 0.0, 0.0, 1.0);
   if (number >= CUBE_LATTICE + ${entries.length}) return;
-  float values[CUBE_STRIDE], lanes[4], total[4], basis[CUBE_COUNT * 4];
-  for (int k = 0; k < CUBE_STRIDE; ++k) values[k] = 0.0;
-  for (int k = 0; k < CUBE_COUNT * 4; ++k) basis[k] = 0.0;
-  if (number < CUBE_LATTICE) cube_load_row(number, values);
+  float shape[CUBE_ROOM];
+  for (int k = 0; k < CUBE_ROOM; ++k) shape[k] = 0.0;
+  if (number < CUBE_LATTICE) cube_load_row(number, 0, shape);
   for (int k = 0; k < ${GROUPS}; ++k) {
-    for (int w = 0; w < 4; ++w) { lanes[w] = at[k][w]; total[w] = 0.5; }
-    if (number < CUBE_LATTICE) {
-      cube_tabulate(lanes, basis);
-      for (int w = 0; w < 4; ++w) total[w] = 0.5 + cube_deviation(1.0, cube_polynomial(values, basis, w));
-    } else {
-      cube_add_entry(0.0, number - CUBE_LATTICE, lanes, total);
-    }
-    vec4 g = vec4(total[0], total[1], total[2], total[3]);
+    vec4 g;
+    for (int w = 0; w < 4; ++w) g[w] = reflectance(number, shape, at[k][w]);
     first.rgb += vec3(dot(red_a[k], g), dot(green_a[k], g), dot(blue_a[k], g));
     second.rgb += vec3(dot(red_b[k], g), dot(green_b[k], g), dot(blue_b[k], g));
   }
@@ -52,17 +49,15 @@ void add(int number, float weight) {
 }
 void main() {
   vec3 rgb = linear(texelFetch(image, ivec2(gl_FragCoord.xy), 0).rgb);
-  float colour[3], place[4], sides[6];
+  float colour[3], place[CUBE_PLACE];
+  int nodes[4];
   for (int axis = 0; axis < 3; ++axis) colour[axis] = rgb[axis];
-  for (int k = 0; k < 4; ++k) place[k] = 0.0;
-  for (int k = 0; k < 6; ++k) sides[k] = 0.0;
-  int entry = cube_locate(colour, place), lowest = cube_weigh(place, sides);
+  for (int k = 0; k < CUBE_PLACE; ++k) place[k] = 0.0;
+  for (int k = 0; k < 4; ++k) nodes[k] = 0;
+  int entry = cube_locate(colour, nodes, place);
   first = second = vec4(0.0);
-  for (int corner = 0; corner < 8; ++corner) {
-    int r = corner >> 2, g = corner >> 1 & 1, b = corner & 1;
-    add(lowest + (r * CUBE_DIM + g) * CUBE_DIM + b, place[3] * sides[r] * sides[2 + g] * sides[4 + b]);
-  }
-  if (entry >= 0) add(CUBE_LATTICE + entry, 1.0 - place[3]);
+  for (int k = 0; k < 4; ++k) add(nodes[k], place[4] * place[k]);
+  if (entry >= 0) add(CUBE_LATTICE + entry, 1.0 - place[4]);
 }`;
 const shown = `#version 300 es
 precision highp float;

@@ -1,5 +1,6 @@
 """Failures of a build, smoothness, round trips, calibration of errors."""
 
+from itertools import permutations
 from typing import Any
 
 import numpy as np
@@ -111,18 +112,22 @@ def round_trip_errors(cube: Cube) -> dict[str, Array]:
 
 def _random_rgb(data: CubeData) -> Array:
     """Linear RGB (n, 3), uniform in the cube or, if it is sparse, in its complete
-    cells.
+    tetrahedra.
     """
     random = np.random.default_rng(SEED)
-    rgb = random.random((COLOURS, 3))
-    if data.complete_cells is None:
-        return rgb
-    low = data.lattice.position(
-        random.choice(np.flatnonzero(data.complete_cells), COLOURS)
-    )
-    return data.lattice.nodes[low] + rgb * (
-        data.lattice.nodes[low + 1] - data.lattice.nodes[low]
-    )
+    if not data.is_sparse:
+        return random.random((COLOURS, 3))
+    lattice = data.lattice
+    low = lattice.position(np.flatnonzero(data.points.present))
+    low = low[(low < lattice.dim - 1).all(axis=1)]
+    orders = [np.argsort(order) for order in permutations(range(3))]
+    steps = np.array(orders)[:, None] < np.arange(4)[:, None]
+    corners = lattice.index(low[:, None, None] + steps).reshape(-1, 4)
+    complete = corners[data.points.holds(corners)]
+    chosen = lattice.target(random.choice(complete, COLOURS))
+    weights = random.dirichlet(np.ones(4), COLOURS)
+    rgb: Array = (weights[:, :, None] * chosen).sum(axis=1)
+    return rgb
 
 
 def check_calibration(actual: Array, stated: Array) -> dict[str, float]:

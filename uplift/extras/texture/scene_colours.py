@@ -12,7 +12,7 @@ import numpy as np
 
 from uplift.colorimetry.gamut import check_method
 from uplift.colorimetry.sensor import Sensor
-from uplift.common.arrays import Array, Indices, Mask, StrPath
+from uplift.common.arrays import Array, Mask, StrPath
 from uplift.common.errors import OptionError, TextureError, warn
 from uplift.common.files import file_digest
 from uplift.common.progress import Progress, ProgressCallback
@@ -20,8 +20,7 @@ from uplift.extras.images.channels import coloured_parts
 from uplift.extras.images.counts import Counts
 from uplift.extras.images.image import open_image
 from uplift.extras.images.reader import SurfaceReader, check_encoding
-from uplift.lattice.entry_boxes import MARGIN, EntryBoxes
-from uplift.lattice.lattice import CORNERS, Lattice
+from uplift.lattice.entry_boxes import EntryBoxes
 
 BLOCK_PIXELS = 1 << 16
 """Pixels decoded at a time."""
@@ -43,7 +42,7 @@ def as_images(paths: StrPath | Sequence[StrPath]) -> "Images":
 @dataclass(frozen=True)
 class Images:
     """A scene of at least one image; a `SceneLike` of `uplift.build`. Memory holds the
-    cells of the colours only.
+    nodes of the colours only.
 
     ``encoding``, ``out_of_gamut`` and ``space`` are those of
     `uplift.extras.texture.prepare`. Raises `OptionError`.
@@ -72,12 +71,7 @@ class Images:
         Raises `TextureError`, and `ColourError` with ``out_of_gamut="error"``. Warns of
         images in another RGB space.
         """
-        cells = np.zeros(boxes.lattice.size, dtype=bool)
-        for done, path in enumerate(self.paths):
-            progress(Progress("images", done, len(self.paths)))
-            for rgb in self.colours(path, sensor):
-                cells[cells_touched(boxes.lattice, rgb)] = True
-        return boxes.required_points(cells)
+        return boxes.required_points(self.all_colours(sensor, progress))
 
     def describe(self) -> list[dict[str, Any]]:
         """Return name and digest of each image, and how it was decoded, as
@@ -89,6 +83,14 @@ class Images:
             {"name": path.name, "digest": file_digest(path), **decoding}
             for path in self.paths
         ]
+
+    def all_colours(
+        self, sensor: Sensor, progress: ProgressCallback
+    ) -> Iterator[Array]:
+        """Yield the `colours` of one image after the other."""
+        for done, path in enumerate(self.paths):
+            progress(Progress("images", done, len(self.paths)))
+            yield from self.colours(path, sensor)
 
     def colours(self, path: Path, sensor: Sensor) -> Iterator[Array]:
         """Yield the colours of an image, linear RGB (n, 3) in [0, 1] of a sensor, block
@@ -123,17 +125,6 @@ class Images:
                         yield rgb.astype(float), counts
 
 
-def cells_touched(lattice: Lattice, rgb: Array) -> Indices:
-    """Return the numbers (m,) of the cells around linear RGB (n, 3), and of those
-    within rounding error of them.
-    """
-    low, _ = lattice.cell(rgb - MARGIN)
-    high, _ = lattice.cell(rgb + MARGIN)
-    on_face = (low != high).any(axis=1)
-    adjacent = np.where(CORNERS[:, None, :] == 1, high[on_face], low[on_face])
-    return lattice.index(np.concatenate([low, adjacent.reshape(-1, 3)]))
-
-
 @dataclass(frozen=True, eq=False)
 class ColourSet:
     """Scene of linear RGB (n, 3) for `uplift.build`: the cube gets the nodes that the
@@ -146,9 +137,7 @@ class ColourSet:
         self, boxes: EntryBoxes, sensor: Sensor, progress: ProgressCallback
     ) -> Mask:
         """Nodes (dim³,) that the colours need."""
-        return boxes.required_points(
-            boxes.lattice.mask(cells_touched(boxes.lattice, self.rgb))
-        )
+        return boxes.required_points([self.rgb])
 
     def describe(self) -> list[dict[str, Any]]:
         """An empty list: colours have no source files."""

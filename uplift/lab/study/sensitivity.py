@@ -111,7 +111,7 @@ def perturb_atlas(
 def perturb(cube: Cube, count: int = COLOURS) -> list[Row]:
     """Perturb the queries of every mode of a cube. Raises `OptionError`."""
     data = cube.data
-    if data.complete_cells is not None:
+    if data.is_sparse:
         problem = "a sparse cube has no answers between the cells of its scene"
         raise OptionError(problem, code="sparse-cube", hint="build it without a scene")
     lights = comparison_light(data), data.sensor.light

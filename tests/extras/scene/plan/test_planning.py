@@ -128,7 +128,7 @@ def test_the_plan_file_builds_the_cube_whose_cost_was_estimated(planned, plan_fi
     chosen = planned[0].chosen
     assert cube.data.lattice.dim == chosen.cube.dim
     assert cube.data.model.count == chosen.cube.coefficients
-    assert (cube.data.complete_cells is not None) == chosen.sparse
+    assert cube.data.is_sparse == chosen.sparse
     stored = path.with_suffix(".uplift")
     cube.save(stored)
     pixels = 20 * 20 * chosen.pixel.size(0, int(chosen.cost.samples))

@@ -18,7 +18,9 @@
 #define UP_FUNCTION static inline
 #define UP_READS
 #define UP_TABLE
-#define UP_ROW(name, index) const float *name = up_table + (index) * UP_STRIDE
+#define UP_SELDOM UP_FUNCTION
+#define UP_BLOCK UP_WIDTH
+#define UP_ROW(index) (up_table + (index) * UP_STRIDE)
 #include "loops.c"
 #include "numbers.c"
 #include "host.c"

@@ -6,8 +6,6 @@
    up_reflectances(rgb[3], wavelengths[count], count, reflectances[count])
    up_reflectances_n(rgb[n * 3], n, wavelengths[count], count, reflectances[n * count])
    up_evaluate(multipliers[UP_COUNT], wavelengths[count], count, reflectances[count])
-   up_tabulate(wavelengths[UP_WIDTH], basis[UP_COUNT * UP_WIDTH])
-   up_evaluate_block(multipliers[UP_COUNT], basis[UP_COUNT * UP_WIDTH], reflectances[UP_WIDTH])
 
    in mode moments also
 
@@ -16,59 +14,109 @@
    up_multipliers_n(coefficients[n * UP_COUNT], n, multipliers[n * UP_COUNT])
 
    and up_load(path) before all others, if the numbers are in a file. */
-/* Reflectances of the multipliers of a place, mixed with those of an entry unless it is negative, at wavelengths in nm. */
-UP_FUNCTION void up_mix_all(
-    UP_READS_CUBE const float multipliers[UP_COUNT], const float place[UP_PLACE], int entry, const float *wavelengths, int count,
-    float *reflectances)
+/* Tabulate powers at up to `width` wavelengths in nm; `width` is a constant where this is expanded. */
+UP_EXPANDED void up_tabulate_block(UP_READS_CUBE const float *wavelengths, int count, int width, float *basis)
 {
-    int start;
-    for (start = 0; start + UP_WIDTH <= count; start += UP_WIDTH) {
-        up_mix(UP_CUBE multipliers, place[3], entry, wavelengths + start, reflectances + start);
-#if UP_INEXACT
-        up_move(UP_CUBE place, wavelengths + start, reflectances + start);
-#endif
+    float padded[UP_WIDTH];
+    if (count < width || UP_WARPED != 0) {
+        for (int w = 0; w < width; ++w) padded[w] = w < count ? up_warp(UP_CUBE wavelengths[w]) : 0.0f;
+        wavelengths = padded;
     }
-    if (start < count) {
-        float block[UP_WIDTH] = {0}, found[UP_WIDTH];
-        memcpy(block, wavelengths + start, UP_CAST(size_t, count - start) * sizeof *block);
-        up_mix(UP_CUBE multipliers, place[3], entry, block, found);
+    UP_VECTORISE
+    for (int w = 0; w < width; ++w) up_powers(up_abscissa(UP_CUBE wavelengths[w]), w, width, basis);
+}
+
+/* Write the reflectances of a block. */
+UP_EXPANDED void up_write(const float total[UP_WIDTH], int count, int width, float *reflectances)
+{
+    if (count >= width) memcpy(reflectances, total, UP_CAST(size_t, width) * sizeof *total);
+    else memcpy(reflectances, total, UP_CAST(size_t, count) * sizeof *total);
+}
+
+/* Tabulate powers at up to UP_CHUNK wavelengths, in wide blocks, the last few in narrow ones; return how many they are. */
+UP_FUNCTION int up_tabulate(UP_READS_CUBE const float *wavelengths, int count, float basis[UP_COUNT * UP_CHUNK])
+{
+    int some = count < UP_CHUNK ? count : UP_CHUNK, at = 0;
+    for (; some - at > UP_NARROW; at += UP_WIDTH)
+        up_tabulate_block(UP_CUBE wavelengths + at, some - at, UP_WIDTH, basis + UP_COUNT * at);
+    for (; at < some; at += UP_NARROW)
+        up_tabulate_block(UP_CUBE wavelengths + at, some - at, UP_NARROW, basis + UP_COUNT * at);
+    return some;
+}
+
+/* Reflectances of a colour that is found at up to `width` tabulated wavelengths. */
+UP_EXPANDED void up_answer_block(
+    UP_READS_CUBE UP_IN UP_SHAPE(shape), const float place[UP_PLACE], int entry, const float *wavelengths, int count, int width,
+    const float *basis, float *reflectances)
+{
+    float total[UP_WIDTH];
+    up_blend(UP_CUBE shape, place, entry, basis, width, total);
 #if UP_INEXACT
-        up_move(UP_CUBE place, block, found);
+    if (place[8] > 0.0f)
+        for (int w = 0; w < count && w < width; ++w) total[w] = up_move(UP_CUBE place, wavelengths[w], total[w]);
+#else
+    UP_CAST(void, wavelengths);
 #endif
-        memcpy(reflectances + start, found, UP_CAST(size_t, count - start) * sizeof *found);
-    }
+    up_write(total, count, width, reflectances);
+}
+
+/* Reflectances of a colour that is found at all tabulated wavelengths. */
+UP_FUNCTION void up_answer_all(
+    UP_READS_CUBE UP_IN UP_SHAPE(shape), const float place[UP_PLACE], int entry, const float *wavelengths, int count,
+    const float *basis, float *reflectances)
+{
+    int at = 0;
+    for (; count - at > UP_NARROW; at += UP_WIDTH)
+        up_answer_block(
+            UP_CUBE shape, place, entry, wavelengths + at, count - at, UP_WIDTH, basis + UP_COUNT * at, reflectances + at);
+    for (; at < count; at += UP_NARROW)
+        up_answer_block(
+            UP_CUBE shape, place, entry, wavelengths + at, count - at, UP_NARROW, basis + UP_COUNT * at, reflectances + at);
+}
+
+/* Reflectances of multipliers at up to `width` wavelengths. */
+UP_EXPANDED void up_evaluate_block(
+    UP_READS_CUBE const float multipliers[UP_COUNT], const float *wavelengths, int count, int width, float *reflectances)
+{
+    float basis[UP_COUNT * UP_WIDTH], total[UP_WIDTH];
+    up_tabulate_block(UP_CUBE wavelengths, count, width, basis);
+    up_spectrum(multipliers, basis, width, total);
+    up_write(total, count, width, reflectances);
 }
 
 /* Reflectances of stored multipliers at wavelengths in nm. */
 UP_FUNCTION void up_evaluate(
     UP_READS_CUBE const float multipliers[UP_COUNT], const float *wavelengths, int count, float *reflectances)
 {
-    const float place[UP_PLACE] = {0, 0, 0, 1};
-    up_mix_all(UP_CUBE multipliers, place, -1, wavelengths, count, reflectances);
+    int at = 0;
+    for (; count - at > UP_NARROW; at += UP_WIDTH)
+        up_evaluate_block(UP_CUBE multipliers, wavelengths + at, count - at, UP_WIDTH, reflectances + at);
+    for (; at < count; at += UP_NARROW)
+        up_evaluate_block(UP_CUBE multipliers, wavelengths + at, count - at, UP_NARROW, reflectances + at);
 }
 
 #if UP_SPECTRA
 
-/* Reflectances of linear RGB at wavelengths in nm; their colour is exactly this RGB. Clips RGB to [0, 1]. */
-UP_FUNCTION void up_reflectances(UP_READS_CUBE const float rgb[3], const float *wavelengths, int count, float *reflectances)
-{
-    float place[UP_PLACE];
-    int start, entry = up_find(UP_CUBE rgb, place);
-    for (start = 0; start + UP_WIDTH <= count; start += UP_WIDTH)
-        up_answer(UP_CUBE place, entry, wavelengths + start, reflectances + start);
-    if (start < count) {
-        float block[UP_WIDTH] = {0}, found[UP_WIDTH];
-        memcpy(block, wavelengths + start, UP_CAST(size_t, count - start) * sizeof *block);
-        up_answer(UP_CUBE place, entry, block, found);
-        memcpy(reflectances + start, found, UP_CAST(size_t, count - start) * sizeof *found);
-    }
-}
-
-/* The same of n colours at the same wavelengths. */
+/* Reflectances of n colours in linear RGB at the same wavelengths in nm: faster than one by one. */
 UP_FUNCTION void up_reflectances_n(
     UP_READS_CUBE const float *rgb, int n, const float *wavelengths, int count, float *reflectances)
 {
-    for (int i = 0; i < n; ++i, rgb += 3, reflectances += count) up_reflectances(UP_CUBE rgb, wavelengths, count, reflectances);
+    float place[UP_PLACE], basis[UP_COUNT * UP_CHUNK];
+    UP_SHAPE(shape);
+    for (int start = 0; start < count; start += UP_CHUNK) {
+        int some = up_tabulate(UP_CUBE wavelengths + start, count - start, basis);
+        float *found = reflectances + start;
+        for (int i = 0; i < n; ++i, found += count) {
+            int entry = up_find(UP_CUBE rgb + 3 * i, place, shape);
+            up_answer_all(UP_CUBE shape, place, entry, wavelengths + start, some, basis, found);
+        }
+    }
+}
+
+/* The same of one colour; its colour is exactly this RGB. Clips RGB to [0, 1]. */
+UP_FUNCTION void up_reflectances(UP_READS_CUBE const float rgb[3], const float *wavelengths, int count, float *reflectances)
+{
+    up_reflectances_n(UP_CUBE rgb, 1, wavelengths, count, reflectances);
 }
 
 #else
@@ -76,9 +124,10 @@ UP_FUNCTION void up_reflectances_n(
 /* Coefficients of linear RGB, which are linear in the spectrum: they can be filtered. Clips RGB to [0, 1]. */
 UP_FUNCTION void up_coefficients(const float rgb[3], float coefficients[UP_COUNT])
 {
+    int nodes[4];
     float place[UP_PLACE];
-    int entry = up_locate(UP_CUBE rgb, place);
-    up_sum_coefficients(UP_CUBE place, entry, coefficients);
+    int entry = up_locate(rgb, nodes, place);
+    up_sum_coefficients(nodes, place, entry, coefficients);
 }
 
 /* Multipliers of coefficients, once per texel. Returns 0 for numbers that are the coefficients of no spectrum. */
@@ -131,30 +180,40 @@ UP_FUNCTION int up_multipliers_n(const float *coefficients, int n, float *multip
 }
 
 /* Reflectances of linear RGB at wavelengths in nm; their colour is this RGB, approximately. Clips RGB to [0, 1]. */
-UP_FUNCTION void up_reflectances(UP_READS_CUBE const float rgb[3], const float *wavelengths, int count, float *reflectances)
+UP_FUNCTION void up_reflectances(const float rgb[3], const float *wavelengths, int count, float *reflectances)
 {
-    float place[UP_PLACE], coefficients[UP_COUNT], multipliers[UP_COUNT];
-    int entry = up_find(UP_CUBE rgb, place);
-    up_sum_nodes(UP_CUBE place, coefficients);
-    up_multipliers_of(coefficients, multipliers);
-    up_mix_all(UP_CUBE multipliers, place, entry, wavelengths, count, reflectances);
+    float place[UP_PLACE], basis[UP_COUNT * UP_CHUNK];
+    UP_SHAPE(shape);
+    int entry = up_find(rgb, place, shape);
+    for (int start = 0; start < count; start += UP_CHUNK) {
+        int some = up_tabulate(wavelengths + start, count - start, basis);
+        up_answer_all(shape, place, entry, wavelengths + start, some, basis, reflectances + start);
+    }
 }
 
 /* The same of n colours at the same wavelengths: faster than one by one. */
-UP_FUNCTION void up_reflectances_n(
-    UP_READS_CUBE const float *rgb, int n, const float *wavelengths, int count, float *reflectances)
+UP_FUNCTION void up_reflectances_n(const float *rgb, int n, const float *wavelengths, int count, float *reflectances)
 {
+    int nodes[4], entries[UP_LANES];
+    float places[UP_PLACE * UP_LANES], numbers[UP_COUNT * UP_LANES], multipliers[UP_COUNT * UP_LANES], basis[UP_COUNT * UP_CHUNK];
     for (; n > 0; n -= UP_LANES) {
-        float places[UP_PLACE * UP_LANES], numbers[UP_COUNT * UP_LANES], multipliers[UP_COUNT * UP_LANES];
-        int entries[UP_LANES], colours = n < UP_LANES ? n : UP_LANES;
+        int colours = n < UP_LANES ? n : UP_LANES;
         for (int lane = 0; lane < colours; ++lane, rgb += 3) {
-            entries[lane] = up_find(UP_CUBE rgb, places + UP_PLACE * lane);
-            up_sum_nodes(UP_CUBE places + UP_PLACE * lane, numbers + UP_COUNT * lane);
+            entries[lane] = up_locate(rgb, nodes, places + UP_PLACE * lane);
+            up_sum_nodes(nodes, places + UP_PLACE * lane, numbers + UP_COUNT * lane);
+#if UP_INEXACT
+            up_settle(rgb, places + UP_PLACE * lane);
+#endif
         }
         up_multipliers_of_lanes(numbers, colours, multipliers);
-        for (int lane = 0; lane < colours; ++lane, reflectances += count)
-            up_mix_all(
-                UP_CUBE multipliers + UP_COUNT * lane, places + UP_PLACE * lane, entries[lane], wavelengths, count, reflectances);
+        for (int start = 0; start < count; start += UP_CHUNK) {
+            int some = up_tabulate(wavelengths + start, count - start, basis);
+            for (int lane = 0; lane < colours; ++lane)
+                up_answer_all(
+                    multipliers + UP_COUNT * lane, places + UP_PLACE * lane, entries[lane], wavelengths + start, some, basis,
+                    reflectances + lane * count + start);
+        }
+        reflectances += colours * count;
     }
 }
 

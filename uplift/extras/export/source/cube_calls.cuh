@@ -10,9 +10,12 @@
 UP_FUNCTION void up_evaluate(
     const float multipliers[UP_COUNT], const float wavelengths[UP_WIDTH], float reflectances[UP_WIDTH])
 {
-    float basis[UP_COUNT * UP_WIDTH];
-    up_tabulate(wavelengths, basis);
-    up_evaluate_block(multipliers, basis, reflectances);
+    float basis[UP_COUNT];
+    UP_EACH
+    for (int w = 0; w < UP_WIDTH; ++w) {
+        up_powers(up_abscissa(up_warp(wavelengths[w])), 0, 1, basis);
+        up_spectrum(multipliers, basis, 1, reflectances + w);
+    }
 }
 
 /* Reflectances of linear RGB at wavelengths in nm. Clips RGB to [0, 1]. */
@@ -20,8 +23,10 @@ UP_FUNCTION void up_reflectances(
     const float *table, const float rgb[3], const float wavelengths[UP_WIDTH], float reflectances[UP_WIDTH])
 {
     float place[UP_PLACE];
-    int entry = up_find(table, rgb, place);
-    up_answer(table, place, entry, wavelengths, reflectances);
+    UP_SHAPE(shape);
+    int entry = up_find(table, rgb, place, shape);
+    UP_EACH
+    for (int w = 0; w < UP_WIDTH; ++w) reflectances[w] = up_answer(table, shape, place, entry, wavelengths[w]);
 }
 
 #if !UP_SPECTRA
@@ -29,9 +34,10 @@ UP_FUNCTION void up_reflectances(
 /* Coefficients of linear RGB, which are linear in the spectrum: they can be filtered. Clips RGB to [0, 1]. */
 UP_FUNCTION void up_coefficients(const float *table, const float rgb[3], float coefficients[UP_COUNT])
 {
+    int nodes[4];
     float place[UP_PLACE];
-    int entry = up_locate(table, rgb, place);
-    up_sum_coefficients(table, place, entry, coefficients);
+    int entry = up_locate(table, rgb, nodes, place);
+    up_sum_coefficients(table, nodes, place, entry, coefficients);
 }
 
 #endif

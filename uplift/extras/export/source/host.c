@@ -2,6 +2,7 @@
 #define UP_IN const
 #define UP_OUT
 #define UP_ARRAY(name, size) float name[size]
+#define UP_INTS(name, size) int name[size]
 #define UP_BITS(name, x) \
     unsigned name; \
     memcpy(&name, &(x), sizeof name)

@@ -1,12 +1,15 @@
 #define UP_WIDTH ${width}
+#define UP_TEXEL UP_VEC4
 #define UP_FUNCTION
 #define UP_EXPANDED
+#define UP_SELDOM
 #define UP_VECTORISE
 #define UP_READS
 #define UP_TABLE
 #define UP_IN in
 #define UP_OUT inout
 #define UP_ARRAY(name, size) float name[size]; for (int fill = 0; fill < size; ++fill) name[fill] = 0.0f
+#define UP_INTS(name, size) int name[size]; for (int fill = 0; fill < size; ++fill) name[fill] = 0
 #define UP_BITS(name, x) uint name = UP_BITS_OF(x)
 #define UP_BOOL bool
 #define UP_INT(x) int(x)
@@ -29,16 +32,3 @@ float up_number(int index)
 {
     return up_texel(index / 4)[index % 4];
 }
-
-#ifdef UP_STRIDE
-
-/* Copy the row of a lattice point or entry: UP_COUNT numbers of a spectrum, and the tag of a point, filled up with 0. */
-void up_load_row(int index, inout float row[UP_STRIDE])
-{
-    for (int t = 0; t < UP_STRIDE / 4; ++t) {
-        UP_VEC4 texel = up_texel(index * (UP_STRIDE / 4) + t);
-        for (int c = 0; c < 4; ++c) row[4 * t + c] = texel[c];
-    }
-}
-
-#endif

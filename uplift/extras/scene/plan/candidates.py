@@ -124,16 +124,16 @@ class Pixel:
 
         Sums of cosines by Clenshaw's recurrence and an arctangent are 4 C + 15 for each
         sample, a sigmoid 10. From moments to multipliers there are 28 C²
-        (docs/mathematics.md, 4), between eight nodes 16 for each number.
+        (docs/mathematics.md, 4), between four nodes 8 for each number.
         """
         count = cube.coefficients
         is_sigmoid = cube.model == Sigmoid.name
         evaluation = samples * (10 if is_sigmoid else 4 * count + 15)
         conversion = 0 if is_sigmoid else 28 * count**2
         if self.mode == "spectra":
-            return 8 * evaluation + 16 * samples
+            return 4 * evaluation + 8 * samples
         if self.mode == "moments":
-            return 16 * count + conversion + evaluation
+            return 8 * count + conversion + evaluation
         stored = {MOMENTS: conversion + evaluation, MULTIPLIERS: evaluation}
         return stored.get(self.form, 0)
 

@@ -29,7 +29,8 @@ from uplift.extras.scene.plan.candidates import (
 from uplift.extras.scene.plan.evaluation import SAMPLE_OPERATIONS, Rendering
 from uplift.extras.scene.plan.files import SceneFile
 from uplift.extras.scene.plan.trial import Trial
-from uplift.extras.texture.scene_colours import SampledColours, cells_touched
+from uplift.extras.texture.scene_colours import SampledColours
+from uplift.lattice.entry_boxes import MARGIN as ROUNDING
 from uplift.lattice.lattice import Lattice, axis_nodes
 from uplift.models.sigmoid import Sigmoid
 from uplift.pipeline.options import Options
@@ -207,5 +208,5 @@ def _nodes(options: Options, colours: SampledColours) -> tuple[int, int]:
     the textures.
     """
     lattice = Lattice(axis_nodes(options.axis, int(options.dim)))
-    cells = lattice.mask(cells_touched(lattice, colours.colour_bins))
-    return lattice.size, int(lattice.corner_points(cells).sum())
+    _, points = lattice.needed(colours.colour_bins, ROUNDING)
+    return lattice.size, int(points.sum())

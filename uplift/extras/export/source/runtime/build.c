@@ -130,14 +130,22 @@ static void uplift_fill_lists(uplift_cube *cube, const uplift_touch *touches, in
         if (uplift_misses(cube, row)) uplift_mark_cells(cube, uplift_node_number(cube, row));
 }
 
-/* Write the axis, and the last node up to the start of each of 1024 bins of it. */
+/* Write the cells of an axis: the nodes below and above, 2 above the last, and the reciprocal of the step, rounded up; and
+   the last cell up to the start of each of 1024 bins. */
 static void uplift_fill_axis(uplift_cube *cube)
 {
-    float *nodes = cube->numbers + cube->nodes, *bins = cube->numbers + cube->bins;
+    float *cells = cube->numbers + cube->cells, *bins = cube->numbers + cube->bins;
     int low = 0;
-    for (int k = 0; k < cube->dim; ++k) nodes[k] = UPLIFT_CAST(float, uplift_value(cube, UPLIFT_NODES, k));
+    for (int k = 0; k < cube->dim - 1; ++k) {
+        const float below = UPLIFT_CAST(float, uplift_value(cube, UPLIFT_NODES, k));
+        const float above = UPLIFT_CAST(float, uplift_value(cube, UPLIFT_NODES, k + 1)), step = above - below;
+        cells[4 * k] = below;
+        cells[4 * k + 1] = k < cube->dim - 2 ? above : 2;
+        cells[4 * k + 2] = 1 / step;
+        if (step * cells[4 * k + 2] < 1) cells[4 * k + 2] *= 1.00000012f;
+    }
     for (int bin = 0; bin <= 1024; ++bin) {
-        while (low < cube->dim - 2 && nodes[low + 1] <= UPLIFT_CAST(float, bin) / 1024) low += 1;
+        while (cells[4 * low + 1] <= UPLIFT_CAST(float, bin) / 1024) low += 1;
         bins[bin] = UPLIFT_CAST(float, low);
     }
 }
@@ -215,7 +223,7 @@ static int uplift_make_table(uplift_cube *cube, const uplift_sensor *sensor, con
     if (result != UPLIFT_OK) return result;
     total = UPLIFT_CAST(long long, cube->stride) * (is_sparse ? cube->absent_row + 1 : cube->present);
     total = uplift_add_section(&cube->entries, total, UPLIFT_CAST(long long, entries) * cube->entry_count);
-    total = uplift_add_section(&cube->nodes, total, cube->dim);
+    total = uplift_add_section(&cube->cells, total, 4 * (cube->dim - 1));
     total = uplift_add_section(&cube->bins, total, 1025);
     total = uplift_add_section(&cube->lists, total, 2 + 2 * touch_count);
     total = uplift_add_section(&cube->boxes, total, 12 * entries);

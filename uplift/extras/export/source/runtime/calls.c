@@ -1,21 +1,18 @@
 
-/* Use the first functions that can evaluate a cube: others would be slower. */
+/* Use the first lookup that can evaluate a cube: others would be slower. */
 static void uplift_choose(uplift_cube *cube)
 {
     static const struct {
-        int count, is_sigmoid, is_warped, is_inexact, is_sparse;
-        const uplift_kernel *functions;
-    } kernels[] = {${kernels}};
-    const uplift_content *content = &cube->content;
-    const int is_sparse = uplift_has(content, UPLIFT_SPARSE);
+        int count, is_sigmoid;
+        void (*reflectances)(const uplift_cube *, const float *, int, const float *, int, float *);
+    } lookups[] = {${choices}};
+    const uplift_model *model = &cube->content.model;
     int k = 0;
-    while (kernels[k].count < content->model.count || kernels[k].is_sigmoid != content->model.is_sigmoid
-        || kernels[k].is_warped != cube->is_warped || kernels[k].is_inexact < cube->is_inexact
-        || kernels[k].is_sparse < is_sparse) k += 1;
-    cube->kernel = kernels[k].functions;
-    cube->tag = kernels[k].count;
-    cube->stride = kernels[k].count / 4 * 4 + 4;
-    cube->entry_count = content->model.is_sigmoid ? 3 : UPLIFT_MOST_COUNT;
+    while (lookups[k].count < model->count || lookups[k].is_sigmoid != model->is_sigmoid) k += 1;
+    cube->reflectances = lookups[k].reflectances;
+    cube->tag = lookups[k].count;
+    cube->stride = lookups[k].count / 4 * 4 + 4;
+    cube->entry_count = model->is_sigmoid ? 3 : UPLIFT_MOST_COUNT;
 }
 
 /* Read the file of a cube unless an error came before. Return the cube, or release it and return NULL. */
@@ -88,52 +85,46 @@ const char *uplift_message(int result)
     return is_known ? messages[result] : "unknown result";
 }
 
-/* The eight nodes and the entry of a colour, and their weights. */
+/* The four nodes of a colour, their rows and weights, the weight of the lattice, and the entry. */
 typedef struct {
-    int rows[8], entry;
-    float weights[8], lattice_weight;
-    int position[3];
+    int nodes[4], rows[4], entry;
+    float weights[UP_PLACE];
 } uplift_place;
 
 /* Find the nodes of a colour; 0 if the cube lacks one of them. */
 static int uplift_find(const uplift_cube *cube, const float rgb[3], uplift_place *place)
 {
-    float sides[6];
-    int first, is_present = 1;
-    place->entry = cube->kernel->place(cube, rgb, &place->lattice_weight, sides, &first);
-    place->position[0] = first / cube->dim / cube->dim;
-    place->position[1] = first / cube->dim % cube->dim;
-    place->position[2] = first % cube->dim;
-    for (int corner = 0; corner < 8; ++corner) {
-        int step = (corner / 4 * cube->dim + corner / 2 % 2) * cube->dim + corner % 2;
-        place->rows[corner] = uplift_row(cube, first + step);
-        place->weights[corner] = sides[corner / 4] * sides[2 + corner / 2 % 2] * sides[4 + corner % 2];
-        is_present = is_present && place->rows[corner] < cube->present;
+    int is_present = 1;
+    place->entry = up_locate(cube, rgb, place->nodes, place->weights);
+    for (int k = 0; k < 4; ++k) {
+        place->rows[k] = uplift_row(cube, place->nodes[k]);
+        is_present = is_present && place->rows[k] < cube->present;
     }
     return is_present;
-}
-
-int uplift_reflectances(
-    const uplift_cube *cube, const float rgb[3], const float *wavelengths, int count, float *reflectances)
-{
-    uplift_place place;
-    if (cube->points && !uplift_find(cube, rgb, &place)) {
-        for (int k = 0; k < count; ++k) reflectances[k] = 0;
-        return UPLIFT_NOT_IN_SCENE;
-    }
-    cube->kernel->reflectances(cube, rgb, wavelengths, count, reflectances);
-    return UPLIFT_OK;
 }
 
 int uplift_reflectances_n(
     const uplift_cube *cube, const float *rgb, int n, const float *wavelengths, int count, float *reflectances)
 {
     int result = UPLIFT_OK;
-    for (int i = 0; i < n; ++i, rgb += 3, reflectances += count) {
-        int found = uplift_reflectances(cube, rgb, wavelengths, count, reflectances);
-        if (found != UPLIFT_OK) result = found;
-    }
+    if (!cube->points) cube->reflectances(cube, rgb, n, wavelengths, count, reflectances);
+    else
+        for (int i = 0; i < n; ++i, rgb += 3, reflectances += count) {
+            uplift_place place;
+            if (uplift_find(cube, rgb, &place)) {
+                cube->reflectances(cube, rgb, 1, wavelengths, count, reflectances);
+            } else {
+                for (int k = 0; k < count; ++k) reflectances[k] = 0;
+                result = UPLIFT_NOT_IN_SCENE;
+            }
+        }
     return result;
+}
+
+int uplift_reflectances(
+    const uplift_cube *cube, const float rgb[3], const float *wavelengths, int count, float *reflectances)
+{
+    return uplift_reflectances_n(cube, rgb, 1, wavelengths, count, reflectances);
 }
 
 /* Weighted error of nodes, times a factor, and of the entry of a colour; that of a look is expected, as those of nodes. */
@@ -144,12 +135,11 @@ static int uplift_expected_error(const uplift_cube *cube, const float rgb[3], do
     *error = 0;
     if (!cube->content.known[UPLIFT_STANDARD_ERROR]) return UPLIFT_NO_ERRORS;
     if (!uplift_find(cube, rgb, &place)) return UPLIFT_NOT_IN_SCENE;
-    for (int corner = 0; corner < 8; ++corner)
-        sum += UPLIFT_CAST(double, place.weights[corner])
-            * uplift_value(cube, UPLIFT_STANDARD_ERROR, place.rows[corner]);
+    for (int k = 0; k < 4; ++k)
+        sum += UPLIFT_CAST(double, place.weights[k]) * uplift_value(cube, UPLIFT_STANDARD_ERROR, place.rows[k]);
     sum *= factor;
     if (place.entry >= 0) {
-        double weight = UPLIFT_CAST(double, place.lattice_weight);
+        double weight = UPLIFT_CAST(double, place.weights[4]);
         double entry_error = uplift_value(cube, UPLIFT_ATLAS_ERROR, place.entry);
         if (place.entry >= cube->content.entries - cube->content.looks) entry_error *= factor;
         sum = weight * sum + (1 - weight) * entry_error;
@@ -173,18 +163,18 @@ int uplift_coefficient_count(const uplift_cube *cube)
     return UPLIFT_CAST(int, cube->content.model.count);
 }
 
-/* Whether coefficients of a colour would have to be moved: a corner of its cell shares a cell with a node that has not its
-   own colour. Absent ones count as if they had. */
+/* Whether coefficients of a colour would have to be moved: one of its nodes shares a cell with a node that has not its own
+   colour. Absent ones count as if they had. */
 static int uplift_is_moved(const uplift_cube *cube, const uplift_place *place)
 {
-    for (int corner = 0; corner < 8 * cube->is_inexact; ++corner)
-        for (int step = 0; step < 27 && place->weights[corner] > 0; ++step) {
-            const int red = place->position[0] + corner / 4 + step / 9 - 1;
-            const int green = place->position[1] + corner / 2 % 2 + step / 3 % 3 - 1;
-            const int blue = place->position[2] + corner % 2 + step % 3 - 1, last = cube->dim - 1;
+    const int dim = cube->dim;
+    for (int k = 0; k < 4 * cube->is_inexact; ++k)
+        for (int step = 0; step < 27 && place->weights[k] > 0; ++step) {
+            const int red = place->nodes[k] / dim / dim + step / 9 - 1;
+            const int green = place->nodes[k] / dim % dim + step / 3 % 3 - 1, blue = place->nodes[k] % dim + step % 3 - 1;
             int row;
-            if (red < 0 || red > last || green < 0 || green > last || blue < 0 || blue > last) continue;
-            row = uplift_row(cube, (red * cube->dim + green) * cube->dim + blue);
+            if (red < 0 || red >= dim || green < 0 || green >= dim || blue < 0 || blue >= dim) continue;
+            row = uplift_row(cube, (red * dim + green) * dim + blue);
             if (row < cube->present && uplift_misses(cube, row)) return 1;
         }
     return 0;
@@ -198,17 +188,13 @@ int uplift_coefficients(const uplift_cube *cube, const float rgb[3], float *coef
     if (!uplift_find(cube, rgb, &place)) result = UPLIFT_NOT_IN_SCENE;
     else if (uplift_is_moved(cube, &place)) result = UPLIFT_NO_COEFFICIENTS;
     for (int k = 0; k < count; ++k) {
-        double sum = 0, weight = UPLIFT_CAST(double, place.lattice_weight);
-        for (int corner = 0; corner < 8 && result == UPLIFT_OK; ++corner)
-            sum += UPLIFT_CAST(double, place.weights[corner])
-                * uplift_value(cube, UPLIFT_COEFFICIENTS, place.rows[corner] * count + k);
+        double sum = 0, weight = UPLIFT_CAST(double, place.weights[4]);
+        for (int node = 0; node < 4 && result == UPLIFT_OK; ++node)
+            sum += UPLIFT_CAST(double, place.weights[node])
+                * uplift_value(cube, UPLIFT_COEFFICIENTS, place.rows[node] * count + k);
         if (place.entry >= 0 && result == UPLIFT_OK)
             sum = weight * sum + (1 - weight) * uplift_value(cube, UPLIFT_ATLAS_COEFFICIENTS, place.entry * count + k);
         coefficients[k] = UPLIFT_CAST(float, sum);
     }
     return result;
 }
-
-#define UP_POP
-#endif
-#endif

@@ -5,7 +5,7 @@
        #define UPLIFT_IMPLEMENTATION
        #include "uplift.h"
 
-   and all others the second line only. It reads cube files (.uplift) of the formats 3 and ${format}, of every space, model and
+   and all others the second line only. It reads cube files (.uplift) of the format ${format}, of every space, model and
    atlas, and those that were built for a scene. Written by `uplift export --runtime`.
 
        int error;
@@ -19,8 +19,7 @@
    and must not be truncated until uplift_close.
 
    Options, to be defined before the implementation:
-   UPLIFT_WIDTH     wavelengths that are evaluated at a time, 16; 4 or 8 if rays have as few
-   UPLIFT_FILE      name of this file, "uplift.h", if it has another
+   UPLIFT_WIDTH     wavelengths that are evaluated at a time, 16; the last few are in groups of four
    UPLIFT_NO_MMAP   read files into memory instead of mapping them
    UPLIFT_NO_FILES  leave uplift_open out, which needs <stdio.h> or mmap
 
@@ -117,7 +116,7 @@ int uplift_coefficients(const uplift_cube *cube, const float rgb[3], float *coef
 #endif
 #endif
 
-#if defined(UPLIFT_IMPLEMENTATION) && !defined(UPLIFT_KERNEL)
+#ifdef UPLIFT_IMPLEMENTATION
 #ifndef UPLIFT_INCLUDED
 #define UPLIFT_INCLUDED
 
@@ -143,9 +142,6 @@ int uplift_coefficients(const uplift_cube *cube, const float rgb[3], float *coef
 #endif
 #ifndef UPLIFT_WIDTH
 #define UPLIFT_WIDTH ${width}
-#endif
-#ifndef UPLIFT_FILE
-#define UPLIFT_FILE "uplift.h"
 #endif
 #define UPLIFT_MOST_COUNT ${count} /* coefficients of a spectrum */
 #define UPLIFT_SAMPLE_ROOM ${samples}

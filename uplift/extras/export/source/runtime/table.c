@@ -1,16 +1,11 @@
 
-/* Functions for a number of coefficients, see below. */
-typedef struct {
-    void (*reflectances)(const uplift_cube *, const float *, const float *, int, float *);
-    int (*place)(const uplift_cube *, const float *, float *, float *, int *);
-} uplift_kernel;
-
 struct uplift_cube {
     uplift_content content;
-    const uplift_kernel *kernel;
+    /* The lookup for its number of coefficients, see below. */
+    void (*reflectances)(const uplift_cube *, const float *, int, const float *, int, float *);
     /* The table of exported programs, and the constants that locate its sections. */
     float *numbers;
-    int entries, nodes, bins, lists, boxes, pull, scales, luminance, facets, facet_count, samples, dim, stride, tag;
+    int entries, cells, bins, lists, boxes, pull, scales, luminance, facets, facet_count, samples, dim, stride, tag;
     int entry_count, is_warped, is_inexact; /* numbers of an entry in the table */
     float first, step, margin, start, end, low, scale, warp[6];
     /* A cube of a scene: numbers of nodes that have a row, ascending, their rows, and where the numbers of each line of
@@ -168,8 +163,8 @@ static void uplift_set_faces(const uplift_cube *cube, double centre, double reac
     else if (centre > 1 - 1e-6) faces[1] = 2 * centre - faces[0];
 }
 
-/* Write the box of an entry: its centre, what rounding left of it, and reciprocals of the distances to the lower and upper
-   faces. Set the first and last cells that it touches along each axis. */
+/* Write the box of an entry, along each axis its centre, what rounding left of it, and reciprocals of the distances to the
+   lower and upper faces. Set the first and last cells that it touches along each axis. */
 static void uplift_make_box(const uplift_cube *cube, int entry, float box[12], int low[3], int high[3])
 {
     const double reach = uplift_value(cube, UPLIFT_ATLAS_REACH, entry);
@@ -181,10 +176,10 @@ static void uplift_make_box(const uplift_cube *cube, int entry, float box[12], i
         high[k] = uplift_cell(cube, faces[1]);
         low[k] = low[k] > cell - 1 ? low[k] : cell - 1;
         high[k] = high[k] < cell + 1 ? high[k] : cell + 1;
-        box[k] = UPLIFT_CAST(float, centre);
-        box[3 + k] = UPLIFT_CAST(float, centre - UPLIFT_CAST(double, box[k]));
-        box[6 + k] = UPLIFT_CAST(float, centre > faces[0] ? 1 / (centre - faces[0]) : 0);
-        box[9 + k] = UPLIFT_CAST(float, faces[1] > centre ? 1 / (faces[1] - centre) : 0);
+        box[4 * k] = UPLIFT_CAST(float, centre);
+        box[4 * k + 1] = UPLIFT_CAST(float, centre - UPLIFT_CAST(double, box[4 * k]));
+        box[4 * k + 2] = UPLIFT_CAST(float, centre > faces[0] ? 1 / (centre - faces[0]) : 0);
+        box[4 * k + 3] = UPLIFT_CAST(float, faces[1] > centre ? 1 / (faces[1] - centre) : 0);
     }
 }
 
