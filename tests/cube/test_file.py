@@ -209,6 +209,7 @@ def test_arrays_that_break_lookups_are_refused(data, forged, name, change):
 
 
 PHASE = {"start": 380.0, "end": 780.0, "warp": "none"}
+VISION = {**PHASE, "warp": "vision"}
 MODELS = [
     {"name": "spline"},
     {"name": "moments", "count": 8, "phase": PHASE},
@@ -247,6 +248,8 @@ PROVENANCE = [
         *({"threshold": value} for value in (0, 5e-324, 1e-13, 0.2, -1e-4)),
         *({"model": model, "entry_model": model} for model in MODELS),
         *({"provenance": value} for value in PROVENANCE),
+        {"entry_model": {"name": "moments", "count": 7, "phase": PHASE}},
+        {"entry_model": {"name": "moments", "count": 9, "phase": VISION}},
         {"dim": 7},
         {"entries": ["grey"] * 23},
         {"features": ["camera"]},

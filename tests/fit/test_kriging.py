@@ -4,10 +4,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from numpy.testing import assert_allclose
+from numpy.testing import assert_allclose, assert_array_equal
 
 from uplift.fit import kriging
 from uplift.fit.kriging import (
+    CELLS,
+    MAX_POINTS,
     METRIC,
     NEARBY,
     WHITE,
@@ -80,3 +82,13 @@ def test_less_trust_expects_less_away_from_entries():
     far = np.array([[0.0, 0, 60 + NEARBY * KERNEL.reach + 1]])
     assert_allclose(half(PLACES), full(PLACES), rtol=1e-9)
     assert_allclose(half(far), full(far) / 2, rtol=1e-9)
+
+
+def test_close_spectra_are_averaged_where_there_are_many():
+    places = RNG.uniform(0, 60, (20 * MAX_POINTS, 3))
+    deviations = RNG.normal(size=(20 * MAX_POINTS, 4))
+    many = average_close(places, deviations)
+    assert len(many.locations) <= MAX_POINTS
+    assert_array_equal(many.counts, np.bincount(many.point))
+    assert_allclose(many.counts @ many.deviations, deviations.sum(axis=0), atol=1e-9)
+    assert np.abs(many.locations[many.point] - places).max() <= CELLS[-1]
