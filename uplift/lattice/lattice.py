@@ -3,9 +3,11 @@ numbered blue fastest.
 """
 
 import decimal
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import product
+from typing import Any
 
 import numpy as np
 
@@ -117,20 +119,10 @@ class Lattice:
         They lead from the lowest corner of the cell to the highest, along the axes in
         the order of decreasing fractions; equal ones are in the order red, green, blue.
         """
-        red, green, blue = self.index(np.eye(3, dtype=np.int64))
-        whole = red + green + blue
-        r, g, b = fraction.T
-        largest = np.where(
-            r >= g, np.where(r >= b, red, blue), np.where(g >= b, green, blue)
-        )
-        smallest = np.where(
-            r >= g, np.where(g >= b, blue, green), np.where(r >= b, blue, red)
-        )
-        path = [np.zeros_like(largest), largest, whole - smallest, whole + 0 * largest]
-        # The weights are 1 − t₁, t₁ − t₂, t₂ − t₃ and t₃ of fractions t₁ ≥ t₂ ≥ t₃.
-        falling = -np.sort(-fraction, axis=1)
-        weights = -np.diff(falling, axis=1, prepend=1, append=0)
-        return self.index(low)[:, None] + np.stack(path, axis=1), weights
+        strides = self.dim**2, self.dim, 1
+        steps, weights = tetrahedron(fraction.T, strides, np.where)
+        corners = self.index(low)[:, None] + np.stack(np.broadcast_arrays(*steps), 1)
+        return corners, np.stack(weights, axis=1)
 
     def cell_corners(self, low: Indices) -> Indices:
         """All corners (n, 8) of the cells with lowest corners at positions (n, 3)."""
@@ -205,6 +197,33 @@ class Lattice:
         position = self.position(index)[:, None, :] + NEIGHBOURS
         inside: Mask = np.all((position >= 0) & (position < self.dim), axis=-1)
         return self.index(np.clip(position, 0, self.dim - 1)), inside
+
+
+def tetrahedron(
+    fractions: Any, strides: tuple[int, int, int], where: Callable[..., Any]
+) -> tuple[tuple[Any, ...], tuple[Any, ...]]:
+    """Steps (n) from the lowest corners of cells to the four of `Lattice.tetrahedra`,
+    as strides of the axes, and their weights (n), for fractions (3, n) of NumPy or JAX.
+
+    Conditions keep the derivatives of one tetrahedron where fractions are equal.
+    """
+    r, g, b = fractions
+
+    def by_falling(red: Any, green: Any, blue: Any) -> tuple[Any, Any, Any]:
+        return (
+            where(r >= g, where(r >= b, red, blue), where(g >= b, green, blue)),
+            where(
+                r >= g,
+                where(g >= b, green, where(r >= b, blue, red)),
+                where(r >= b, red, where(g >= b, blue, green)),
+            ),
+            where(r >= g, where(g >= b, blue, green), where(r >= b, blue, red)),
+        )
+
+    first, second, third = by_falling(r, g, b)
+    one, other, _ = by_falling(*strides)
+    steps = 0, one, one + other, sum(strides)
+    return steps, (1 - first, first - second, second - third, third)
 
 
 def corner_room(least: Array, most: Array) -> Array:

@@ -15,6 +15,7 @@ from numpy.typing import DTypeLike, NDArray
 
 from uplift.common.arrays import Array, Indices
 from uplift.lattice.entry_boxes import EntryBoxes
+from uplift.lattice.lattice import tetrahedron
 from uplift.lookup.node_table import NodeTable
 
 Places = NDArray[np.int32]
@@ -158,33 +159,11 @@ def _tetrahedral(grid: Grid, rgb: jax.Array) -> jax.Array:
     low = _cell(grid, rgb)
     start = _rows(grid.nodes, low)
     along = (rgb - start) / (_rows(grid.nodes, low + 1) - start)
+    strides = len(grid.nodes) ** 2, len(grid.nodes), 1
     fractions = along.astype(grid.lattice.dtype).T
-    dim = len(grid.nodes)
-    first, second, third = _by_falling(fractions, fractions)
-    one, next_, last = _by_falling(fractions, (dim * dim, dim, 1))
+    steps, weights = tetrahedron(fractions, strides, jnp.where)
     corner = _number(grid, low)
-    corners = (corner, corner + one, corner + one + next_, corner + one + next_ + last)
-    weights = (1 - first, first - second, second - third, third)
     total = jnp.zeros((len(rgb), grid.lattice.shape[1]), dtype=grid.lattice.dtype)
-    for place, weight in zip(corners, weights, strict=True):
-        total += weight[:, None] * _rows(grid.lattice, place)
+    for step, weight in zip(steps, weights, strict=True):
+        total += weight[:, None] * _rows(grid.lattice, corner + step)
     return total
-
-
-def _by_falling(fractions: jax.Array, values: Any) -> tuple[jax.Array, ...]:
-    """Values of red, green and blue in the order of falling fractions (3, n).
-
-    Conditions keep the derivatives of one tetrahedron where fractions are equal.
-    """
-    r, g, b = fractions
-    red, green, blue = values
-    where = jnp.where
-    return (
-        where(r >= g, where(r >= b, red, blue), where(g >= b, green, blue)),
-        where(
-            r >= g,
-            where(g >= b, green, where(r >= b, blue, red)),
-            where(r >= b, red, where(g >= b, blue, green)),
-        ),
-        where(r >= g, where(g >= b, blue, green), where(r >= b, blue, red)),
-    )
