@@ -208,17 +208,16 @@ def tetrahedron(
     Conditions keep the derivatives of one tetrahedron where fractions are equal.
     """
     r, g, b = fractions
+    red_first, red_second, green_second = r >= g, r >= b, g >= b
 
-    def by_falling(red: Any, green: Any, blue: Any) -> tuple[Any, Any, Any]:
-        return (
-            where(r >= g, where(r >= b, red, blue), where(g >= b, green, blue)),
-            where(
-                r >= g,
-                where(g >= b, green, where(r >= b, blue, red)),
-                where(r >= b, red, where(g >= b, blue, green)),
-            ),
-            where(r >= g, where(g >= b, blue, green), where(r >= b, blue, red)),
+    def by_falling(red: Any, green: Any, blue: Any) -> tuple[Any, ...]:
+        largest = where(red_second, red, blue), where(green_second, green, blue)
+        smallest = where(green_second, blue, green), where(red_second, blue, red)
+        middle = (
+            where(green_second, green, smallest[1]),
+            where(red_second, red, smallest[0]),
         )
+        return tuple(where(red_first, *pair) for pair in (largest, middle, smallest))
 
     first, second, third = by_falling(r, g, b)
     one, other, _ = by_falling(*strides)
