@@ -10,6 +10,7 @@ from uplift_cli.commands import compare
 
 from uplift.atlas.sources import read_atlas
 from uplift.extras.emission.lamps import read_lamps
+from uplift.extras.papers.representations import compare as representations
 from uplift.extras.timing import ONE_THREAD
 
 measure = cache(compare._measure)
@@ -18,8 +19,11 @@ GIVEN = ("--light", "LED-B3", "--light", "HP1")
 
 @pytest.fixture(autouse=True)
 def once(monkeypatch):
-    """Restore the environment that the command changes, and repeat no measurement."""
+    """Restore the environment that the command changes, repeat no measurement, and take
+    short timings.
+    """
     monkeypatch.setattr(compare, "_measure", measure)
+    monkeypatch.setattr(representations, "QUICK_TIMING", (16, 1e-4, 2))
     for name, value in ONE_THREAD.items():
         monkeypatch.setenv(name, value)
 
