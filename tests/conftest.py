@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pytest
 from hypothesis import settings
+from threadpoolctl import threadpool_limits
 
 import uplift
 from tests.helpers import quiet_build
@@ -27,6 +28,11 @@ os.environ["UPLIFT_TRACEBACK"] = "1"
 os.environ.pop(
     "PYTHONUNBUFFERED", None
 )  # with it, commands hold nothing back that could be lost at their end
+
+# Like commands, tests compute with one thread of BLAS: more of them wait for work by
+# spinning. pytest has loaded numpy by now; processes that tests start have not.
+threadpool_limits(1, user_api="blas")
+os.environ["OPENBLAS_NUM_THREADS"] = "1"
 
 # Compiled JAX code of this worker and the processes that it starts, kept between runs.
 # JAX does not write entries at once, so workers that share a folder may read half of

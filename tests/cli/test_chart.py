@@ -16,22 +16,21 @@ from uplift.lab.chart.results import read_chart
 
 @pytest.fixture(scope="module")
 def quick(repository, tmp_path_factory):
-    """A quick chart of the ColorChecker with short timings: its folder and the result
-    of the command.
+    """A quick chart of the ColorChecker with short timings, with a method that crashes
+    and one that is missing: its folder and the result of the command.
     """
     folder = tmp_path_factory.mktemp("quick")
     with pytest.MonkeyPatch.context() as patch:
         patch.chdir(folder)
-        patch.setattr(
-            task,
-            "QUICK",
-            replace(task.QUICK, colours=300, seconds_per_error=0.1, longest=0.02),
-        )
+        haste = {"seconds_per_error": 0.1, "longest": 0.02, "batches": (1, 1000)}
+        patch.setattr(task, "QUICK", replace(task.QUICK, colours=300, **haste))
+        patch.setattr(selection, "METHODS", (*selection.METHODS, *faulty.METHODS))
         for name, value in ONE_THREAD.items():
             patch.setenv(name, value)
         atlas = str(repository / "atlases" / "macbeth.txt")
         words = ["chart", "--quick", "--atlas", atlas, "-o", "out"]
         words += ["--method", "mallett2019", "--method", "moments9-16*-spectra"]
+        words += ["--method", "faulty-*"]
         result = CliRunner().invoke(main, words, catch_exceptions=False)
     assert result.exit_code == 0, result.output
     return folder / "out", result
@@ -60,33 +59,15 @@ def test_an_atlas_improves_its_own_materials(numbers):
 
 
 @pytest.mark.skipif(os.name == "nt", reason="signals of POSIX")
-@pytest.mark.parametrize(
-    ("limit", "reasons"),
-    [
-        (
-            task.QUICK.limit,
-            {
-                "abort": ("broken", "crashed: signal 6; it needs "),
-                "lack": ("not installed", "needs "),
-            },
-        ),
-        (1.0, {"hang": ("broken", "no answer within 1 s; it needs ")}),
-    ],
-)
-def test_methods_that_crash_hang_or_are_missing_have_rows(
-    run, macbeth, monkeypatch, limit, reasons
-):
-    monkeypatch.setattr(task, "QUICK", replace(task.QUICK, limit=limit))
-    monkeypatch.setattr(selection, "METHODS", (*selection.METHODS, *faulty.METHODS))
-    methods = ["--method", "mallett2019"]
-    for name in reasons:
-        methods += ["--method", f"faulty-{name}"]
-    shown = run("chart --quick -o out --atlas", macbeth, *methods).stdout
-    other, *rows = read_chart("out/chart.csv").results
-    assert other.state == "measured"
-    for row, (state, why) in zip(rows, reasons.values(), strict=True):
-        assert (row.state, row.why) == (state, why + faulty.NEEDS)
-        assert f"{row.method}: {state}, not drawn: {row.why}" in shown
+def test_methods_that_crash_or_are_missing_have_rows(quick):
+    folder, result = quick
+    *_, aborted, lacking = read_chart(folder / "chart.csv").results
+    reason = f"crashed: signal 6; it needs {faulty.NEEDS}"
+    assert (aborted.state, aborted.why) == ("broken", reason)
+    reason = f"needs {faulty.NEEDS}"
+    assert (lacking.state, lacking.why) == ("not installed", reason)
+    for row in (aborted, lacking):
+        assert f"{row.method}: {row.state}, not drawn: {row.why}" in result.stdout
 
 
 def test_chart_can_be_redrawn_from_its_table(quick, run):

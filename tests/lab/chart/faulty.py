@@ -1,9 +1,8 @@
-"""Peers of the chart that abort, hang or are not installed. A child process imports
+"""Peers of the chart that abort or are not installed. A child process imports
 this module.
 """
 
 import os
-import time
 
 from uplift.lab.method import Method, NotInstalledError, PreparedMethod
 
@@ -13,10 +12,6 @@ NEEDS = "a library that works: install it"
 def abort(task):
     """Prepare a method that aborts its process when it is called."""
     return PreparedMethod(lambda rgb, wavelengths: os.abort(), 8)
-
-
-def hang(task):
-    time.sleep(3600)
 
 
 def lack(task):
@@ -31,5 +26,5 @@ METHODS = tuple(
         prepare=prepare,
         needs=NEEDS,
     )
-    for prepare in (abort, hang, lack)
+    for prepare in (abort, lack)
 )
