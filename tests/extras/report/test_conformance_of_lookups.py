@@ -12,7 +12,7 @@ from uplift.extras.report.conformance import check_renderer
 
 PATIENCE = 300
 """Seconds that Mitsuba may take."""
-SPP = 32
+SPP = 64
 
 
 @pytest.fixture(scope="module")
