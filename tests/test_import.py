@@ -35,7 +35,7 @@ QUERY = command("query", "#123456", "--format", "json")
 RECOMMENDATION = command("chart", "--recommend", "--tolerance", "1")
 
 
-def test_builds_and_queries_load_only_the_core():
+def test_queries_load_only_the_core():
     assert not loaded_subpackages("import uplift")[1] & {
         "numpy",
         "click",
@@ -50,11 +50,6 @@ def test_builds_and_queries_load_only_the_core():
         *HEAVY_OF_FITS,
     }
     assert not loaded_subpackages(RECOMMENDATION)[1] & {"matplotlib", *HEAVY_OF_FITS}
-    assert loaded_subpackages("import uplift; uplift.build(dim=2)")[0] == CORE | {
-        "atlas",
-        "fit",
-        "pipeline",
-    }
     for code, more in (
         ("uplift.load().reflectance([0.5, 0.5, 0.5], wavelengths=[400, 500])", set()),
         ("uplift.load_emission().spectrum([0.5, 0.5, 0.5])", {"extras.emission"}),
@@ -68,7 +63,8 @@ def test_builds_and_queries_load_only_the_core():
         }
 
 
-def test_settings_of_jax_numpy_and_warnings_are_unchanged():
+def test_builds_load_only_the_core_and_change_no_setting():
+    """Of JAX, numpy and warnings."""
     code = (
         # these two add filters of warnings themselves
         "import numpy, warnings, scipy.special, scipy.sparse\n"
@@ -78,21 +74,20 @@ def test_settings_of_jax_numpy_and_warnings_are_unchanged():
         "before = settings()\n"
         "import jax, jax.numpy as jnp\n"
         "of_jax = dict(jax.config.values)\n"
-        "import uplift; uplift.load().reflectance([0.5, 0.5, 0.5]); "
-        "uplift.build(dim=2)\n"
-        "from uplift.lookup import bulk; bulk.spectra(uplift.load(), [500])([0.5, "
-        "0.5, 0.5])\n"
+        "import uplift.bulk\n"
+        "uplift.load().reflectance([0.5, 0.5, 0.5]); uplift.build(dim=2)\n"
+        "uplift.bulk.spectra(uplift.load(), [500])([0.5, 0.5, 0.5])\n"
         "assert settings() == before\n"
-        "print({name for name, value in jax.config.values.items() if of_jax.get(name) "
-        "!= value})\n"
-        "print(jnp.zeros(1).dtype)"
+        "for name, value in jax.config.values.items():\n"
+        "    assert of_jax.get(name) == value, name\n"
+        "assert jnp.zeros(1).dtype == 'float32'\n"
     )
-    assert run_python(code) == "set()\nfloat32"
-
-
-def test_bulk_is_a_module_and_an_attribute():
-    for code in ("import uplift", "import uplift.bulk"):
-        assert run_python(f"{code}\nprint(uplift.bulk.spectra.__name__)") == "spectra"
+    assert loaded_subpackages(code)[0] == CORE | {
+        "atlas",
+        "bulk",
+        "fit",
+        "pipeline",
+    }
 
 
 def test_only_the_interface_is_listed_and_can_be_imported():

@@ -7,7 +7,7 @@ from tests.parts import CC, NODE, SANITIZERS, need
 def check(program, folder, monkeypatch):
     """Read mutants: files are refused or answered."""
     monkeypatch.setattr(header, "KEPT", folder / "kept")
-    tally = header.run(program, range(300), folder)
+    tally = header.run(program, range(150), folder)
     assert not tally["crash"]
     assert not tally[header.NOT_A_REFLECTANCE]
     assert tally["0"] > 30

@@ -217,7 +217,7 @@ def test_keywords_of_build_are_the_options():
     """Editors complete them, and `Options` has their defaults."""
     names = [field.name for field in dataclasses.fields(Options)]
     assert list(OptionKeywords.__annotations__) == names
-    assert uplift.build(None, Options(coefficients=5), dim=2).dim == 2
+    assert uplift.build(None, Options(prior="smooth"), dim=2).dim == 2
     with pytest.raises(TypeError, match="dimm"):
         uplift.build(dimm=3)  # type: ignore[call-arg]
 

@@ -6,6 +6,7 @@ from numpy.testing import assert_allclose
 
 import uplift
 from tests.cube.cube_files import forge
+from tests.fuzz.builds import little_work
 from tests.helpers import raises
 from uplift.colorimetry import observer
 from uplift.colorimetry.camera import CAMERA
@@ -15,6 +16,12 @@ from uplift.extras.report.rebuild import rebuild
 
 NIKON = "Nikon 5100 (NPL)"
 GREYS = np.array([[0.2, 0.2, 0.2], [0.5, 0.48, 0.45]])
+
+
+@pytest.fixture(scope="module", autouse=True)
+def _little_work():
+    with little_work():
+        yield
 
 
 @pytest.fixture(scope="module")
@@ -32,9 +39,8 @@ def table(tmp_path_factory):
 @pytest.fixture(scope="module")
 def cube(table):
     """Dim 4 of the camera of the file, under A."""
-    return uplift.build(
-        dim=4, coefficients=5, space=CAMERA, observer=str(table), illuminant="A"
-    )
+    sensor = {"space": CAMERA, "observer": str(table), "illuminant": "A"}
+    return uplift.build(dim=4, coefficients=5, prior="smooth", **sensor)
 
 
 def test_a_stored_cube_is_read_and_rebuilt_without_its_file(cube, table, tmp_path):

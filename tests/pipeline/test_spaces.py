@@ -26,7 +26,7 @@ def _little_work():
 
 @pytest.mark.parametrize("space", SPACES)
 def test_a_cube_of_the_space_works(space, tmp_path):
-    cube = uplift.build(dim=2, space=space, prior="smooth")
+    cube = uplift.build(dim=2, space=space, model="sigmoid", prior="smooth")
     cube.save(tmp_path / "cube.uplift")
     assert digest(uplift.load(tmp_path / "cube.uplift").data) == digest(cube.data)
     sensor = cube.data.sensor

@@ -6,6 +6,7 @@ segments from black to W_i. Each pair of segments spans two parallel facets, so 
 facets are known exactly.
 """
 
+import functools
 from dataclasses import dataclass
 
 import numpy as np
@@ -18,6 +19,8 @@ BLOCK = 1 << 6
 """Colours processed per block: with thousands of facets, larger arrays do not fit into
 the cache.
 """
+BLOCK_FACETS = 1 << 10
+"""Facets whose offsets are computed at once."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,7 +83,16 @@ def toward_grey(limits: Solid, grey: Array, target: Array, margin: float) -> Arr
 
 
 def solid(matrix: Array) -> Solid:
-    """Compute the object-colour solid of a sensor. Shapes: ``matrix`` (3, N)."""
+    """Compute the object-colour solid of a sensor. Shapes: ``matrix`` (3, N).
+
+    Of the last few sensors it is kept, as a build needs it several times.
+    """
+    return _solid(np.ascontiguousarray(matrix, dtype=float).tobytes())
+
+
+@functools.lru_cache(maxsize=4)
+def _solid(matrix_bytes: bytes) -> Solid:
+    matrix = np.frombuffer(matrix_bytes).reshape(3, -1)
     # The zonotope is Σ_i [0, 1] · W_i. A facet is spanned by two segments: its normal
     # is n = ± W_i × W_j.
     segments = matrix.T
@@ -94,5 +106,12 @@ def solid(matrix: Array) -> Solid:
     # The farthest colour along n takes every W_k with n · W_k > 0: the offset is Σ_k
     # max(0, n · W_k).
     along = normals @ matrix
-    offsets = np.maximum(along, 0).sum(axis=1), np.maximum(-along, 0).sum(axis=1)
-    return Solid(np.concatenate([normals, -normals]), np.concatenate(offsets))
+    upper = np.empty(len(normals))
+    lower = np.empty(len(normals))
+    for block in blocks(len(normals), BLOCK_FACETS):
+        upper[block] = np.maximum(along[block], 0).sum(axis=1)
+        lower[block] = np.maximum(-along[block], 0).sum(axis=1)
+    found = Solid(np.concatenate([normals, -normals]), np.concatenate([upper, lower]))
+    found.normals.setflags(write=False)
+    found.offsets.setflags(write=False)
+    return found

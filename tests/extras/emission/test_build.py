@@ -23,15 +23,23 @@ def lamps(*entries):
 
 @pytest.fixture(scope="module")
 def table():
-    """Table of two lamps, of which one has bands."""
-    return build_emission(lamps(("warm", WARM), ("bands", BANDS)), **SMALL)
+    """Table of three lamps, of which one has bands and one is known, and of a fourth
+    that has the colour of the first.
+    """
+    known = uplift.load_emission().data.entries
+    tube = known.spectra[known.names.index("FL2")]
+    given = (("warm", WARM), ("bands", BANDS), ("tube", tube), ("second", WARM))
+    with warns("entry-duplicate"):
+        return build_emission(lamps(*given), **SMALL)
 
 
 def test_lamps_come_first_and_keep_known_ones_away(table):
     entries = table.data.entries
-    assert entries.names[:2] == ("warm", "bands")
+    assert entries.names[:3] == ("warm", "bands", "tube")
     assert "A" in entries.names
-    apart = distances(entries.uv[2:], entries.uv[:2])
+    assert not {"FL2", "second"} & set(entries.names)
+    assert table.data.provenance["left_out"] == ["second"]
+    apart = distances(entries.uv[3:], entries.uv[:3])
     assert apart.min() > 2e-3
 
 
@@ -39,21 +47,6 @@ def test_every_node_has_its_chromaticity_and_discs_do_not_overlap(table, tmp_pat
     """Which is checked of every file."""
     table.save(tmp_path / "a.uplift")
     assert table.data.spectra.min() >= 0
-
-
-def test_a_known_lamp_in_the_atlas_is_not_there_twice():
-    known = uplift.load_emission().data.entries
-    mine = lamps(("mine", known.spectra[known.names.index("FL2")]))
-    names = build_emission(mine, **SMALL).lamp_names
-    assert names[0] == "mine"
-    assert "FL2" not in names
-
-
-def test_lamps_of_one_colour_are_left_out_with_a_warning():
-    with warns("entry-duplicate"):
-        table = build_emission(lamps(("first", WARM), ("second", WARM)), **SMALL)
-    assert table.data.provenance["left_out"] == ["second"]
-    assert "second" not in table.lamp_names
 
 
 def test_expected_errors_are_numbers_where_sodium_has_no_z():
