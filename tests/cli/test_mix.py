@@ -19,7 +19,7 @@ def test_blue_and_yellow_are_green(ask):
     ramp = [colour["hex"] for colour in found["ramp"]]
     assert [ramp[0], ramp[4], ramp[-1]] == [BLUE, found["hex"], YELLOW]
     assert ask("paints mix --plot green.png", BLUE, YELLOW) == found
-    assert ask("paints mix", f"2:{BLUE}", f"1:{YELLOW}")["hex"] == "#538a51"
+    assert ask("paints mix", f"2:{BLUE}", f"1:{YELLOW}")["hex"] == "#548a51"
     alone = ask("paints mix", f"0:{BLUE}", f"2:{YELLOW}")
     assert (alone["names"], alone["hex"]) == ([YELLOW], YELLOW)
 

@@ -153,6 +153,7 @@ def test_the_objective_is_the_weighted_sum_of_all_criteria(metamers, model):
     assert residual @ residual == pytest.approx(expected, rel=1e-9)
 
 
+@pytest.mark.filterwarnings("ignore:.*far from both:uplift.UpliftWarning")
 def test_atlases_have_the_designed_materials_within_their_range(
     metamers, model, tmp_path
 ):
