@@ -7,7 +7,7 @@ It skips the test if the compiler or the browser is lacking.
 
 import numpy as np
 
-from tests.extras.paint.run_mixer import run_c, shade
+from tests.extras.export.run_program import run_c, shade
 from tests.helpers import output_of
 from tests.parts import GLSLANG, need
 
