@@ -69,7 +69,7 @@ StructuredBuffer<float4> colours : register(t1);
 RWStructuredBuffer<float4> found : register(u2);
 [numthreads(64, 1, 1)]
 void main(uint3 id : SV_DispatchThreadID) {{
-    found[id.x] = cube_reflectances(colours[id.x].xyz, float4({wavelengths}));
+    found[id.x] = cube_reflectances(colours[id.x].xyz, float4(WAVELENGTHS));
 }}
 """
 
@@ -257,14 +257,19 @@ def shade(path, code, pixels, upload="", **data):
 def hlsl(path, rgb, wavelengths, form="file"):
     """Compiled to SPIR-V, and by Vulkan: needs glslangValidator and wgpu."""
     need(GLSLANG, VULKAN)
-    folder = path.parent
     count = -(-len(rgb) // 64) * 64
-    (folder / "main.hlsl").write_text(
-        PIXEL.format(code=path.read_text(), wavelengths=listed(wavelengths))
-    )
-    command = "glslangValidator -D -V -S comp -e main main.hlsl -o main.spv"
-    output_of(*command.split(), cwd=folder)
+    compile_hlsl(path, PIXEL.replace("WAVELENGTHS", listed(wavelengths)))
     return call_in_child(_by_vulkan, path, rgb, count, seconds=60)
+
+
+def compile_hlsl(path, code):
+    """Compile a shader to SPIR-V."""
+    need(GLSLANG)
+    main = path.with_name("main.hlsl")
+    main.write_text(code.format(code=path.read_text()))
+    command = "glslangValidator -D -V -S comp -e main main.hlsl -o main.spv"
+    output_of(*command.split(), cwd=path.parent)
+    return path.with_name("main.spv")
 
 
 def _by_vulkan(path, rgb, count):
