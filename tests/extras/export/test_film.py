@@ -51,7 +51,11 @@ def test_a_table_of_reflectances_has_the_spectra_of_the_cube(small_cube, tmp_pat
     assert described["kind"] == "reflectance"
     assert described["array"]["lut_size"] == 96
     assert described["array"]["spectral_shape"] == [380.0, 780.0, 5.0]
-    assert described["reflectance"]["scene_illuminant"] == "D65"
+    assert described["reflectance"] == {
+        "scene_illuminant": "D65",
+        "midgray": 0.184,
+        "bounded": False,
+    }
     rgb = np.random.default_rng(3).uniform(0.1, 0.3, (200, 3))
     xyz = rgb @ small_cube.data.sensor.rgb_to_xyz.T
     reflectance = read(path, xyz)
