@@ -1,12 +1,14 @@
-"""Fixtures: a cube of unusual phase and number of moments, and one of sigmoids with an
-atlas.
+"""Fixtures: a cube of unusual phase and number of moments, one of sigmoids with an
+atlas, and cubes with unrealisable nodes.
 """
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
-from tests.helpers import with_points
+import uplift
+from tests.helpers import quiet_build, with_points
 from uplift.cube.data import EntrySpectra
 from uplift.lookup.cube import Cube, load
 from uplift.models.moments import Moments
@@ -34,3 +36,19 @@ def warped_cube(small_cube) -> Cube:
 @pytest.fixture(scope="session")
 def sigmoid_cube(repository) -> Cube:
     return load(repository / "cubes" / "sigmoid-8-macbeth.uplift")
+
+
+@pytest.fixture(scope="session")
+def wide() -> dict[str, Cube]:
+    """Cubes with unrealisable nodes, by model."""
+    paint = uplift.Entry("paint", np.array([380.0, 780.0]), np.array([0.1, 0.6]))
+    return {
+        model: quiet_build(
+            uplift.Atlas((paint,)),
+            dim=4,
+            space="ITU-R BT.2020",
+            model=model,
+            prior="smooth",
+        )
+        for model in ("moments", "sigmoid")
+    }

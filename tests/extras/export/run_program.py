@@ -8,6 +8,7 @@ driver is lacking.
 import base64
 import json
 import subprocess
+from functools import partial
 
 import numpy as np
 import pytest
@@ -15,7 +16,18 @@ import pytest
 from benchmarks.browser import browser
 from tests.compiling import compile_in
 from tests.helpers import output_of
-from tests.parts import CC, CHROMIUM, CXX, GLSLANG, NVCC, VULKAN, need, vulkan_device
+from tests.parts import (
+    CC,
+    CHROMIUM,
+    CXX,
+    GLSLANG,
+    NVCC,
+    SANITIZED,
+    SANITIZERS,
+    VULKAN,
+    need,
+    vulkan_device,
+)
 from uplift.extras.processes import call_in_child
 
 HOST = r"""
@@ -57,7 +69,7 @@ StructuredBuffer<float4> colours : register(t1);
 RWStructuredBuffer<float4> found : register(u2);
 [numthreads(64, 1, 1)]
 void main(uint3 id : SV_DispatchThreadID) {{
-    found[id.x] = cube_reflectances(colours[id.x].xyz, float4({wavelengths}));
+    found[id.x] = cube_reflectances(colours[id.x].xyz, float4(WAVELENGTHS));
 }}
 """
 
@@ -67,7 +79,7 @@ uniform sampler2D colours;
 out vec4 found;
 void main() {{
     vec3 colour = texelFetch(colours, ivec2(gl_FragCoord.xy), 0).rgb;
-    found = cube_reflectances(colour, vec4({wavelengths}));
+    found = cube_reflectances(colour, vec4(WAVELENGTHS));
 }}
 """
 WEBGL = """(() => {
@@ -123,29 +135,50 @@ WEBGL = """(() => {
 TABLE_UPLOAD = 'upload(2, "cube_table", data.columns, data.rows, floats(table));'
 
 
-def c(path, rgb, wavelengths, form="header", compiler=("cc", "-std=c99")):
-    load = LOAD_FILE if form == "file" else ""
-    return _compiled(
-        path, rgb, wavelengths, compiler, "rgb, wavelengths, 4, found", load
+COMPILERS = {
+    "c": (CC, ("cc", "-std=c99")),
+    "cpp": (CXX, ("c++", "-std=c++11", "-x", "c++", "-Wold-style-cast")),
+    "sanitized": (SANITIZERS, ("cc", *SANITIZED)),
+    "fast": (CC, ("cc", "-O2", "-ffast-math")),  # as if nothing was NaN
+}
+"""What each way to compile needs, and its command."""
+
+
+def run_c(path, host, given, compiler="c"):
+    """Return what a host prints for numbers, next to the header of a path."""
+    part, command = COMPILERS[compiler]
+    need(part)
+    folder = path.parent
+    (folder / "main.c").write_text(host)
+    program = compile_in(folder, command[0], *STRICT, *command[1:])
+    done = subprocess.run(
+        [program], cwd=folder, input=given.tobytes(), capture_output=True, check=True
     )
+    return np.frombuffer(done.stdout, given.dtype)
 
 
-def cpp(path, rgb, wavelengths, form="header"):
-    return c(path, rgb, wavelengths, form, ("c++", "-std=c++11", "-x", "c++"))
+def c(path, rgb, wavelengths, form="header", compiler="c"):
+    load = LOAD_FILE if form == "file" else ""
+    call = "rgb, wavelengths, 4, found"
+    return _compiled(path, rgb, wavelengths, compiler, call, load)
 
 
-def fast(path, rgb, wavelengths, form="header"):
-    """Compiled as if nothing was NaN."""
-    return c(path, rgb, wavelengths, form, ("cc", "-std=c99", "-O2", "-ffast-math"))
+cpp = partial(c, compiler="cpp")
+fast = partial(c, compiler="fast")
 
 
 def cuda(path, rgb, wavelengths, form="file"):
     """On the host, where the same functions are C++."""
     load = LOAD.format(size=path.with_suffix(".bin").stat().st_size // 4)
-    compiler = ("c++", "-std=c++11", "-x", "c++")
-    return _compiled(
-        path, rgb, wavelengths, compiler, "table, rgb, wavelengths, found", load
+    call = "table, rgb, wavelengths, found"
+    return _compiled(path, rgb, wavelengths, "cpp", call, load)
+
+
+def _compiled(path, rgb, wavelengths, compiler, call, load):
+    text = HOST.format(
+        header=path.name, wavelengths=listed(wavelengths), call=call, load=load
     )
+    return run_c(path, text, rgb.astype(np.float32), compiler).reshape(-1, 4)
 
 
 def registers(path, width):
@@ -175,25 +208,6 @@ def compile_vulkan(path, macros):
     return output_of("glslangValidator", "-H", "-V", "main.frag", cwd=path.parent)
 
 
-def _compiled(path, rgb, wavelengths, compiler, call, load):
-    need({"cc": CC, "c++": CXX}[compiler[0]])
-    folder = path.parent
-    text = HOST.format(
-        header=path.name, wavelengths=listed(wavelengths), call=call, load=load
-    )
-    (folder / "main.c").write_text(text)
-    casts = ["-Wold-style-cast"] if compiler[0] == "c++" else []
-    program = compile_in(folder, compiler[0], *STRICT, *compiler[1:], *casts)
-    done = subprocess.run(
-        [program],
-        cwd=folder,
-        input=rgb.astype(np.float32).tobytes(),
-        capture_output=True,
-        check=True,
-    )
-    return np.frombuffer(done.stdout, np.float32).reshape(-1, 4)
-
-
 def listed(wavelengths):
     return ", ".join(str(float(nm)) for nm in wavelengths)
 
@@ -206,59 +220,56 @@ def padded(rgb, count):
 
 
 def glsl(path, rgb, wavelengths, form="file"):
-    """In Chromium, by WebGL 2."""
-    need(CHROMIUM)
-    side = int(np.ceil(np.sqrt(len(rgb))))
-    found = _by_webgl(path, padded(rgb, side * side), listed(wavelengths))
-    if found is None:
-        pytest.skip("the browser has no WebGL 2")
-    return found[: len(rgb)]
-
-
-def _by_webgl(path, rgba, wavelengths):
-    """Return reflectances (side², 4) of colours (side², 4) at four wavelengths, given
-    as text; None without WebGL 2.
-    """
     table = path.with_suffix(".bin").read_bytes()
+    code = FRAGMENT.replace("WAVELENGTHS", listed(wavelengths))
     data = {
-        "code": FRAGMENT.format(code=path.read_text(), wavelengths=wavelengths),
         "table": base64.b64encode(table).decode(),
         "columns": 2048,
         "rows": len(table) // (2048 * 16),
     }
-    return draw(path, rgba, data, TABLE_UPLOAD)
+    return shade(path, code, padded(rgb, len(rgb)), TABLE_UPLOAD, **data)
 
 
-def draw(path, rgba, data, upload):
-    """Return what a fragment shader makes of colours (side², 4), with other textures
-    uploaded; None without WebGL 2.
-    """
+def shade(path, code, pixels, upload="", **data):
+    """Return what a shader draws for pixels (n, 4), by WebGL 2 in Chromium."""
+    need(CHROMIUM)
+    side = int(np.ceil(np.sqrt(len(pixels))))
+    colours = np.zeros((side * side, 4), np.float32)
+    colours[: len(pixels)] = pixels
     shared = {
-        "colours": base64.b64encode(rgba.tobytes()).decode(),
-        "side": int(np.sqrt(len(rgba))),
+        "code": code.format(code=path.read_text()),
+        "colours": base64.b64encode(colours.tobytes()).decode(),
+        "side": side,
     }
     page = path.with_suffix(".html")
     page.write_text("<!doctype html><main aria-busy='false'></main>")
-    code = WEBGL.replace("UPLOAD", upload).replace("DATA", json.dumps(data | shared))
+    data = {"table": "", **data, **shared}
+    script = WEBGL.replace("UPLOAD", upload).replace("DATA", json.dumps(data))
     with browser() as opened:
         opened.open(page)
-        found = opened.evaluate(code)
+        found = opened.evaluate(script)
     if found is None:
-        return None
-    return np.frombuffer(base64.b64decode(found), np.float32).reshape(-1, 4)
+        pytest.skip("the browser has no WebGL 2")
+    rows = np.frombuffer(base64.b64decode(found), np.float32).reshape(-1, 4)
+    return rows[: len(pixels)]
 
 
 def hlsl(path, rgb, wavelengths, form="file"):
     """Compiled to SPIR-V, and by Vulkan: needs glslangValidator and wgpu."""
     need(GLSLANG, VULKAN)
-    folder = path.parent
     count = -(-len(rgb) // 64) * 64
-    (folder / "main.hlsl").write_text(
-        PIXEL.format(code=path.read_text(), wavelengths=listed(wavelengths))
-    )
-    command = "glslangValidator -D -V -S comp -e main main.hlsl -o main.spv"
-    output_of(*command.split(), cwd=folder)
+    compile_hlsl(path, PIXEL.replace("WAVELENGTHS", listed(wavelengths)))
     return call_in_child(_by_vulkan, path, rgb, count, seconds=60)
+
+
+def compile_hlsl(path, code):
+    """Compile a shader to SPIR-V."""
+    need(GLSLANG)
+    main = path.with_name("main.hlsl")
+    main.write_text(code.format(code=path.read_text()))
+    command = "glslangValidator -D -V -S comp -e main main.hlsl -o main.spv"
+    output_of(*command.split(), cwd=path.parent)
+    return path.with_name("main.spv")
 
 
 def _by_vulkan(path, rgb, count):

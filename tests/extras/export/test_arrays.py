@@ -16,6 +16,8 @@ from uplift.lab.study.sensitivity import perturb
 from uplift.lookup.cube import Cube
 from uplift.models.model import evaluate, reflectance
 
+AT = [450, 650]
+
 
 @pytest.fixture
 def sparse(small_cube):
@@ -23,44 +25,29 @@ def sparse(small_cube):
     return with_absent_points(small_cube.data, near_black(small_cube.data))
 
 
-def test_npz_has_all_arrays_and_multipliers_of_the_spectra(small_cube, tmp_path):
-    data = small_cube.data
+def test_npz_has_all_arrays_and_multipliers_of_the_spectra(cyan_cube, tmp_path):
+    """Of nodes, entries and entries outside the space."""
+    data = cyan_cube.data
     count = write_npz(data, tmp_path / "cube.npz")
     with np.load(tmp_path / "cube.npz", allow_pickle=False) as arrays:
         assert len(arrays.files) == count
         for name, array in contents(data)[0].items():
             assert_array_equal(arrays[name], array)
         assert tuple(arrays["atlas.names"]) == data.atlas.names
-        assert json.loads(str(arrays["metadata"]))["model"] == data.model.describe()
-        lattice = evaluate(data.model, arrays["multipliers"], [450, 650])
-        atlas = evaluate(
-            data.atlas.spectra.model, arrays["atlas.multipliers"], [450, 650]
-        )
-    assert_allclose(
-        lattice,
-        reflectance(data.model, data.points.coefficients, [450, 650]),
-        atol=1e-9,
-    )
-    assert_allclose(
-        atlas, small_cube.reflectance(data.atlas.rgb, [450, 650]), atol=1e-9
-    )
-
-
-def test_npz_has_the_entries_outside_the_space(cyan_cube, tmp_path):
-    write_npz(cyan_cube.data, tmp_path / "cube.npz")
-    with np.load(tmp_path / "cube.npz", allow_pickle=False) as arrays:
         assert arrays["outside.names"].tolist() == ["cyan"]
-        assert_array_equal(arrays["outside.rgb"], cyan_cube.data.atlas.outside.rgb)
-        found = evaluate(
-            cyan_cube.data.atlas.spectra.model,
-            arrays["outside.multipliers"],
-            [450, 650],
-        )
-    assert_allclose(
-        found,
-        cyan_cube.data.atlas.outside.spectra.reflectance(np.array([0]), [450, 650]),
-        atol=1e-9,
-    )
+        assert json.loads(str(arrays["metadata"]))["model"] == data.model.describe()
+        model = data.atlas.spectra.model
+        found = [
+            evaluate(data.model, arrays["multipliers"], AT),
+            evaluate(model, arrays["atlas.multipliers"], AT),
+            evaluate(model, arrays["outside.multipliers"], AT),
+        ]
+    expected = [
+        reflectance(data.model, data.points.coefficients, AT),
+        cyan_cube.reflectance(data.atlas.rgb, AT),
+        data.atlas.outside.spectra.reflectance(np.array([0]), AT),
+    ]
+    assert_allclose(np.concatenate(found), np.concatenate(expected), atol=1e-9)
 
 
 def test_present_nodes_of_a_sparse_cube(sparse, tmp_path):

@@ -29,20 +29,10 @@ def cubes(small_cube):
 @pytest.mark.parametrize(
     ("write", "source", "name", "options", "error"),
     [
-        *(
-            (write_coeff, "data", "a.coeff", {"res": res}, OptionError)
-            for res in (1, 257)
-        ),
-        *(
-            (
-                write_coeff,
-                "wide",
-                "a.cpp",
-                {"layout": each, "res": 2},
-                OptionError,
-            )
-            for each in ("pbrt", "luisa")
-        ),
+        (write_coeff, "data", "a.coeff", {"res": 1}, OptionError),
+        (write_coeff, "data", "a.coeff", {"res": 257}, OptionError),
+        (write_coeff, "wide", "a.cpp", {"layout": "pbrt", "res": 2}, OptionError),
+        (write_coeff, "wide", "a.cpp", {"layout": "luisa", "res": 2}, OptionError),
         (write_film, "cube", "a.npy", {"res": 1}, OptionError),
         (write_film, "cube", "a.npy", {"light": "moonlight"}, UnknownNameError),
         (write_film, "cube", "a.npy", {"res": 4}, OutputError),

@@ -45,8 +45,10 @@ def test_a_table_of_codes_holds_the_relit_colours(small_cube, tmp_path):
     )
 
 
-@pytest.mark.parametrize(("light", "res"), [(LIGHT, 33), ("A", 33), ("FL11", 17)])
-@pytest.mark.parametrize("name", ["small_cube", "small_sigmoid_cube"])
+@pytest.mark.parametrize(
+    ("name", "light", "res"),
+    [("small_cube", LIGHT, 33), ("small_sigmoid_cube", "FL11", 17)],
+)
 def test_a_clf_file_takes_linear_colours_and_states_its_largest_error(
     request, tmp_path, name, light, res
 ):

@@ -101,25 +101,23 @@ def test_many_colours_have_the_answers_of_each(evaluate):
     assert evaluate(f"{sizes}.map(row => row.length)") == [0, 0]
 
 
-@pytest.mark.parametrize(
-    "call",
-    [
-        "cube.reflectances([1, 1], [550])",
-        "cube.reflectances(1, [550])",
-        "cube.reflectances([1, 1, 1], 550)",
-        "cube.reflectances([1, 1, 1])",
-        "cube.standardError()",
-        "cube.reflectances(new Uint8ClampedArray([1, 0, 1]), [550])",
-        "cube.coefficients([1.00001, 0, 0])",
-        "cube.errorBound([-0.1, NaN, 0])",
-        "cube.reflectances([1, 1, null], [550])",
-        "cube.reflectances([1, 1, 1], [0.45, 0.55])",
-        "cube.reflectances([1, 1, 1], [550e-9])",
-    ],
-)
-def test_other_arguments_are_refused(evaluate, call):
-    caught = f"(() => {{ try {{ {call}; }} catch (error) {{ return error.name; }} }})()"
-    assert evaluate(caught) == "RangeError"
+def test_other_arguments_are_refused(evaluate):
+    names = evaluate(
+        """[
+        () => cube.reflectances([1, 1], [550]),
+        () => cube.reflectances(1, [550]),
+        () => cube.reflectances([1, 1, 1], 550),
+        () => cube.reflectances([1, 1, 1]),
+        () => cube.standardError(),
+        () => cube.reflectances(new Uint8ClampedArray([1, 0, 1]), [550]),
+        () => cube.coefficients([1.00001, 0, 0]),
+        () => cube.errorBound([-0.1, NaN, 0]),
+        () => cube.reflectances([1, 1, null], [550]),
+        () => cube.reflectances([1, 1, 1], [0.45, 0.55]),
+        () => cube.reflectances([1, 1, 1], [550e-9]),
+        ].map(call => { try { call(); } catch (error) { return error.name; } })"""
+    )
+    assert names == ["RangeError"] * 11
 
 
 def test_what_a_cube_is_opened_from(evaluate):

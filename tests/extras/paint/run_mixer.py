@@ -6,15 +6,12 @@ It skips the test if the compiler, the browser or Node.js is lacking.
 
 import base64
 import json
-import subprocess
 
 import numpy as np
-import pytest
 
-from tests.compiling import compile_in
-from tests.extras.export.run_program import STRICT, draw
+from tests.extras.export.run_program import run_c, shade
 from tests.helpers import output_of
-from tests.parts import CC, CHROMIUM, CXX, NODE, SANITIZED, SANITIZERS, need
+from tests.parts import NODE, need
 
 HOST = """
 #include <stdio.h>
@@ -82,28 +79,6 @@ UPLOAD = """
 """
 
 
-COMPILERS = {
-    "c": (CC, ("cc", "-std=c99")),
-    "cpp": (CXX, ("c++", "-std=c++11", "-x", "c++", "-Wold-style-cast")),
-    "sanitized": (SANITIZERS, ("cc", *SANITIZED)),
-    "fast": (CC, ("cc", "-O2", "-ffast-math")),  # as if nothing was NaN
-}
-"""What each way to compile needs, and its command."""
-
-
-def run_c(path, host, given, compiler="c"):
-    """Return what a host prints for numbers, next to the header of a path."""
-    part, command = COMPILERS[compiler]
-    need(part)
-    folder = path.parent
-    (folder / "main.c").write_text(host)
-    program = compile_in(folder, *command, *STRICT)
-    done = subprocess.run(
-        [program], input=given.tobytes(), capture_output=True, check=True
-    )
-    return np.frombuffer(done.stdout, given.dtype)
-
-
 def c(path, pairs, shares, compiler="c"):
     """Return results (n, 3, 3) of mixing two, n, and codes."""
     given = np.column_stack([pairs.reshape(-1, 6), shares]).astype(np.float32)
@@ -125,19 +100,6 @@ def js(path, pairs, shares):
         for pair, share in zip(pairs.tolist(), shares.tolist(), strict=True)
     ]
     return np.array(json.loads(output_of("node", main, input=json.dumps(given))))
-
-
-def shade(path, code, pixels, upload="", **data):
-    """Return what a shader draws for pixels (n, 4), by WebGL 2 in Chromium."""
-    need(CHROMIUM)
-    side = int(np.ceil(np.sqrt(len(pixels))))
-    padding = np.zeros((side * side - len(pixels), 4))
-    first = np.concatenate([pixels, padding]).astype(np.float32)
-    data = {"table": "", **data, "code": code.format(code=path.read_text())}
-    found = draw(path, first, data, upload)
-    if found is None:
-        pytest.skip("the browser has no WebGL 2")
-    return found[: len(pixels)]
 
 
 def glsl(path, pairs, shares, dim):

@@ -7,9 +7,7 @@ It skips the test if the compiler or the browser is lacking.
 
 import numpy as np
 
-from tests.extras.paint.run_mixer import run_c, shade
-from tests.helpers import output_of
-from tests.parts import GLSLANG, need
+from tests.extras.export.run_program import run_c, shade
 
 HOST = """
 #include <stdio.h>
@@ -68,13 +66,3 @@ def glsl(path, films):
     mixture, of a thickness and on a grey ground, by WebGL 2 in Chromium.
     """
     return shade(path, FRAGMENT, films[:, [0, 0, 1, 0]])
-
-
-def compile_hlsl(path):
-    """Compile a shader to SPIR-V."""
-    need(GLSLANG)
-    main = path.with_name("main.hlsl")
-    main.write_text(PIXEL.format(code=path.read_text()))
-    command = "glslangValidator -D -V -S comp -e main main.hlsl -o main.spv"
-    output_of(*command.split(), cwd=path.parent)
-    return path.with_name("main.spv")

@@ -7,6 +7,7 @@ import PyOpenColorIO
 import pytest
 from numpy.testing import assert_allclose
 
+from tests.extras.export.run_program import compile_hlsl
 from tests.extras.paint import run_paints
 from tests.extras.paint.invented import invented
 from uplift.colorimetry.delta_e import delta_e_rgb
@@ -79,7 +80,8 @@ def test_few_wavelengths_have_the_colours_of_all(paints, samples):
 
 
 def test_hlsl_compiles(samples, folder):
-    assert run_paints.compile_hlsl(folder / "tubes.hlsl").stat().st_size > 1000
+    compiled = compile_hlsl(folder / "tubes.hlsl", run_paints.PIXEL)
+    assert compiled.stat().st_size > 1000
 
 
 def test_the_shader_mixes_as_python(samples, folder, rng):
