@@ -1,5 +1,6 @@
 """Files of sparse cubes: present nodes only, and errors for nodes without a place."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -16,13 +17,14 @@ from tests.helpers import (
     without_evidence,
 )
 from uplift.common import machine
-from uplift.common.errors import CubeFileError, OutputError
+from uplift.common.errors import ColourError, CubeFileError, OutputError
 from uplift.cube.file import digest, read, write
 from uplift.cube.schema import POINTS
 from uplift.extras.images.slices import write_slices
 from uplift.extras.pages.sheet import write_sheet
 from uplift.lattice.lattice import CORNERS, Lattice
 from uplift.lattice.point_table import Status
+from uplift.lookup.cube import Cube
 
 
 @pytest.fixture
@@ -144,3 +146,17 @@ def test_images_of_more_nodes_than_memory_are_refused(data, tmp_path, monkeypatc
     for write_images, name in ((write_slices, "a.exr"), (write_sheet, "a.png")):
         with raises(OutputError, "out-of-memory"):
             write_images(data, tmp_path / name)
+
+
+def test_a_colour_without_one_of_its_four_nodes_is_not_covered(plain_cube):
+    rgb = np.array([0.3, 0.2, 0.7])
+    data = plain_cube.data
+    corners = data.lattice.corners(rgb[None])[0][0]
+    assert Cube(replace(data, points=data.points.restricted_to(corners))).covers(rgb)
+    for absent in corners:
+        present = corners[corners != absent]
+        cube = Cube(replace(data, points=data.points.restricted_to(present)))
+        assert not cube.covers(rgb)
+        with raises(ColourError, "colour-not-in-scene") as caught:
+            cube.reflectance(rgb)
+        assert "0.3, 0.2, 0.7" in caught.value.problem

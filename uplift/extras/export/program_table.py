@@ -217,7 +217,12 @@ def _moving(data: CubeData) -> tuple[dict[str, Values], dict[str, Any]]:
 def _boxes(boxes: EntryBoxes) -> Floats:
     """Return for each axis the centre, the rest that it rounds off, and reciprocals of
     distances to the faces, (E, 3, 4); 0 for none.
+
+    A cube without entries has one row of zeros: gcc warns of reads beyond the table,
+    even where they are not reached.
     """
+    if not len(boxes.rgb):
+        return np.zeros((1, 3, 4), dtype=np.float32)
     low, high = boxes.faces
     below = _reciprocal(boxes.rgb - low)
     above = _reciprocal(high - boxes.rgb)
