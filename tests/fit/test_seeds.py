@@ -10,24 +10,19 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
-from numpy.testing import assert_allclose, assert_array_equal
+from numpy.testing import assert_array_equal
 
 import uplift
 from tests.conftest import MACBETH
 from tests.helpers import quiet_build
 from uplift.colorimetry import observer
-from uplift.colorimetry.delta_e import delta_e_1976, delta_e_spectra, rgb_to_lab
+from uplift.colorimetry.delta_e import delta_e_spectra
 from uplift.colorimetry.illuminants import SCENE_LIGHTS
 from uplift.fit.base import learn_base
 from uplift.fit.prior import Prior
 from uplift.fit.problem import Problem
 from uplift.fit.seeds import (
-    CORNER_SHARE,
     DIMS,
-    FAR,
-    NEAR,
-    initial_guess,
-    near_entry,
     seed,
 )
 from uplift.lattice.lattice import AXES, Lattice
@@ -65,28 +60,6 @@ ENTRIES = np.random.default_rng(0).normal(size=(2, 5)) / 3
 @pytest.fixture(scope="module")
 def prior(sensor):
     return Prior(MODEL, sensor, learn_base(Problem(sensor, MODEL))[0])
-
-
-def test_the_share_of_the_entry_falls_from_near_to_far_corners(prior):
-    """Less for entries with narrow boxes."""
-    shares = []
-    for dim in (6, 12, 16, 24):
-        seeds = seed(Lattice(np.linspace(0, 1, dim)), RGB)
-        nodes = seeds.lattice.points[seeds.points]
-        entry = seeds.entry
-        apart = delta_e_1976(
-            rgb_to_lab(prior.sensor, nodes), rgb_to_lab(prior.sensor, RGB[entry])
-        )
-        share = np.clip((FAR - apart) / (FAR - NEAR), 0, 1)
-        share *= CORNER_SHARE * seeds.half_width[entry]
-        start = initial_guess(seeds.points, nodes, prior, seeds, ENTRIES, near_entry)
-        own = MODEL.to_storage(ENTRIES[entry])
-        expected = MODEL.to_storage(prior(nodes))
-        mixed = expected + share[:, None] * (own - expected)
-        assert_allclose(MODEL.to_storage(start), mixed, atol=1e-6)
-        shares.extend(share)
-    assert (np.array(shares) == 0).sum() >= 5
-    assert ((np.array(shares) > 0) & (np.array(shares) < 1)).sum() >= 4
 
 
 def lattice_errors(data):

@@ -17,7 +17,6 @@ from uplift.colorimetry import observer
 from uplift.colorimetry.delta_e import delta_e_2000_weights, lab, lab_jacobian
 from uplift.colorimetry.sensor import in_unit_cube
 from uplift.extras.looks.design import (
-    MET,
     LookGoal,
     design_reflectance,
     fit_designs,
@@ -27,7 +26,6 @@ from uplift.extras.looks.targets import prior_with_looks
 from uplift.fit.entries import fit_entries
 from uplift.fit.prior import fit_prior
 from uplift.fit.problem import Problem
-from uplift.models.model import evaluate
 from uplift.models.moments import Moments
 
 TOLERANCE = 1e-6
@@ -52,25 +50,6 @@ def materials(sensor):
         measured = on_grid(read_atlas(MACBETH), sensor.wavelengths)
     measured = measured[in_unit_cube(sensor.rgb(measured))]
     return measured, uplift.load().reflectance(np.clip(sensor.rgb(measured), 0, 1))
-
-
-@pytest.mark.parametrize("names", [("FL11",), ("A", "FL2", "FL11", "LED-B3")])
-def test_looks_of_real_materials_are_met_in_their_entry_fit(sensor, materials, names):
-    lights = [observer.light(name) for name in names]
-    model = Moments(17)
-    goals = []
-    fits = []
-    for spectrum, expected in zip(*materials, strict=True):
-        goals.append(goal_of(sensor, lights, spectrum))
-        fits.append(design_reflectance(sensor, goals[-1], expected))
-    designs = np.array(fits)
-    assert designs.min() >= 0
-    assert designs.max() <= 1
-    fitted = fit_designs(Problem(sensor, model), goals, designs)
-    answers = evaluate(model, fitted.multipliers, sensor.wavelengths)
-    assert np.abs(sensor.rgb(answers) - fitted.rgb).max() <= TOLERANCE
-    for goal, answer in zip(goals, answers, strict=True):
-        assert goal.delta_e(answer).max() <= MET
 
 
 def test_nearest_colour_is_that_of_a_linear_program(sensor, materials):

@@ -70,28 +70,6 @@ def test_filtering_agrees_with_mitsuba_s_bitmap(mi, texture, spectrum, sensor, o
         assert_allclose(found, np.array(theirs.eval_3(si)), rtol=0, atol=1e-5)
 
 
-def test_texels_of_an_entry_outside_the_space_have_its_spectrum(
-    mi, texture, spectrum, cyan_cube, tmp_path
-):
-    """The other texels of the image keep theirs, though they have more multipliers than
-    without the entry.
-    """
-    cyan_cube.save(tmp_path / "cyan.uplift")
-    outside = cyan_cube.data.atlas.outside
-    entry = outside.spectra.reflectance(np.array([0]), AT)[0]
-    pixels = np.float32([[outside.rgb[0], [0.01, 0.01, 0.2]]])
-    path = write_exr(tmp_path / "image.exr", planes(pixels))
-    other = cyan_cube.reflectance(pixels[0, 1], AT, mode="refined")
-    options = {"cube": str(tmp_path / "cyan.uplift"), "filter_type": "nearest"}
-    for source in ({"bitmap": mi.Bitmap(pixels)}, {"filename": str(path)}):
-        found = texture(None, out_of_gamut="error", **source, **options)
-        assert_allclose(spectrum(found, (0.25, 0.5), AT), entry, atol=1e-5)
-        assert_allclose(spectrum(found, (0.75, 0.5), AT), other, atol=1e-5)
-    colour = ", ".join(map(repr, outside.rgb[0].tolist()))
-    found = texture(None, rgb=colour, cube=options["cube"])
-    assert_allclose(spectrum(found, (0.5, 0.5), AT), entry, atol=1e-5)
-
-
 def test_only_encoded_files_are_decoded_and_layers_are_read(
     mi, texture, spectrum, small_cube, tmp_path
 ):
