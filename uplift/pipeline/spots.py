@@ -2,17 +2,15 @@
 spots under other lights, and are smoothed (docs/mathematics.md, 8).
 """
 
-from collections.abc import Sequence
-from typing import NamedTuple
-
 import numpy as np
 
 from uplift.colorimetry import observer
-from uplift.colorimetry.delta_e import delta_e_spectra
+from uplift.colorimetry.delta_e import delta_e_2000, lab
 from uplift.colorimetry.sensor import Light, Sensor
 from uplift.common.arrays import Array, Indices, Mask
 from uplift.common.errors import UpliftWarning, warn
 from uplift.common.text import pluralise
+from uplift.fit.gradients import Steps
 from uplift.fit.problem import Problem
 from uplift.lattice.entry_boxes import EntryBoxes
 from uplift.lattice.lattice import CORNERS
@@ -37,15 +35,6 @@ DIRECTIONS = np.concatenate([2 * CORNERS - 1, np.eye(3), -np.eye(3)])
 """(14, 3) ramps from an entry: of all channels up or down, and of each."""
 
 
-class Exit(NamedTuple):
-    """Where ramps leave the boxes of k entries."""
-
-    rgb: Array
-    """(k, 3) linear RGB."""
-    codes: Array
-    """(k, 1) 8-bit codes from the entry, at least 1."""
-
-
 def smooth_spots(
     problem: Problem, constraints: Constraints, boxes: EntryBoxes, points: PointTable
 ) -> tuple[Constraints, dict[str, float]]:
@@ -54,19 +43,24 @@ def smooth_spots(
     """
     # Looks are wishes for one colour, and not evidence of a material.
     rows = np.flatnonzero(boxes.half_width[: constraints.measured_count] > 0)
-    exits = _exits(problem.sensor, boxes, rows)
+    exits, codes = _exits(problem.sensor, boxes, rows)
     known = _are_known(exits, boxes, points)
-    rows = rows[known]
-    exits = [Exit(place.rgb[known], place.codes[known]) for place in exits]
-    spectra = constraints.spectra(problem.model)
-    own = spectra.reflectance(rows, problem.sensor.wavelengths)
+    rows, exits, codes = rows[known], exits[:, known], codes[:, known]
+    sensor = problem.sensor
+    own = constraints.spectra(problem.model).reflectance(rows, sensor.wavelengths)
     around = _lattice_spectra(problem, boxes, points, boxes.rgb[rows])
-    reached = [_lattice_spectra(problem, boxes, points, place.rgb) for place in exits]
-    answers, share = own, np.ones((len(rows), 1))
+    # Colours are linear in spectra, and so are steps in a box.
+    steps = Steps(boxes.lattice, sensor, (sensor.light, *scene_lights(problem)))
+    entry, beside = map(steps.colours, (own, around))
+    beyond = np.stack(
+        [steps.colours(_lattice_spectra(problem, boxes, points, rgb)) for rgb in exits]
+    )
+    share = np.ones((len(rows), 1))
     for _ in range(ROUNDS):
-        steps = _steepest(problem, answers, exits, reached)
-        share /= np.maximum(steps / LARGEST_STEP, 1)[:, None]
-        answers = share * own + (1 - share) * around
+        weight = share[..., None]
+        excess = _steepest(weight * entry + (1 - weight) * beside, beyond, codes)
+        share /= np.maximum(excess / LARGEST_STEP, 1)[:, None]
+    answers = share * own + (1 - share) * around
     spots = share[:, 0] < 1
     rows = rows[spots]
     if not rows.size:
@@ -101,47 +95,43 @@ def warn_of_spots(shares: dict[str, float]) -> None:
     warn(UpliftWarning(problem, code="entry-smoothed", hint=hint))
 
 
-def _are_known(exits: Sequence[Exit], boxes: EntryBoxes, points: PointTable) -> Mask:
-    """Whether the nodes that the boxes of entries need have spectra (k,): all of them,
+def _are_known(exits: Array, boxes: EntryBoxes, points: PointTable) -> Mask:
+    """Whether the nodes that answer exits (D, k, 3) have spectra (k,): all of them,
     unless the cube was built for a scene.
     """
-    corners = [boxes.lattice.corners(place.rgb)[0] for place in exits]
-    return points.holds(np.concatenate(corners, axis=1))
+    corners, _ = boxes.lattice.corners(exits.reshape(-1, 3))
+    known: Mask = np.all(points.holds(corners).reshape(exits.shape[:2]), axis=0)
+    return known
 
 
-def _exits(sensor: Sensor, boxes: EntryBoxes, rows: Indices) -> list[Exit]:
-    """Where ramps through entries (k,) in each of `DIRECTIONS` leave their boxes."""
+def _exits(sensor: Sensor, boxes: EntryBoxes, rows: Indices) -> tuple[Array, Array]:
+    """Linear RGB (D, k, 3) at which ramps through entries (k,), in each of
+    `DIRECTIONS`, leave their boxes, and the 8-bit codes (D, k) until there, at least 1.
+    """
     codes = np.arange(len(sensor.decoding))
     centre, low, high = (
         np.interp(np.clip(rgb[rows], 0, 1), sensor.decoding, codes)
         for rgb in (boxes.rgb, *boxes.faces)
     )
-    exits = []
-    for direction in DIRECTIONS:
-        room = np.where(direction > 0, high - centre, centre - low)
-        count = np.where(direction == 0, np.inf, room).min(axis=1)[:, None]
-        rgb = np.interp(centre + direction * count, codes, sensor.decoding)
-        exits.append(Exit(rgb, np.maximum(count, 1)))
-    return exits
+    ways = DIRECTIONS[:, None]
+    room = np.where(ways > 0, high - centre, centre - low)
+    count = np.where(ways == 0, np.inf, room).min(axis=-1)
+    rgb = np.interp(centre + ways * count[..., None], codes, sensor.decoding)
+    return rgb, np.maximum(count, 1)
 
 
-def _steepest(
-    problem: Problem, own: Array, exits: Sequence[Exit], answers: Sequence[Array]
-) -> Array:
-    """Largest ΔE00 (k,) of the step of a code between entries with spectra (k, N) and
-    those of the lattice at exits, less that under the light of the build.
+def _steepest(entry: Array, beyond: Array, codes: Array) -> Array:
+    """Largest ΔE00 (k,) of the first and the last step of a code from entries of
+    colours (k, L, 3) to those beyond their boxes (D, k, L, 3), less that under the
+    first light, of the build.
     """
-    steepest = np.zeros(len(own))
-    lights = scene_lights(problem)
-    for place, answer in zip(exits, answers, strict=True):
-        # Mixtures are linear on the way: the first step is like all, and the last.
-        step = (answer - own) / place.codes
-        for before, after in ((own, own + step), (answer - step, answer)):
-            expected = delta_e_spectra(problem.sensor.light, before, after)
-            for light in lights:
-                excess = delta_e_spectra(light, before, after) - expected
-                steepest = np.maximum(steepest, excess)
-    return steepest
+    step = (beyond - entry) / codes[..., None, None]
+    before = np.stack([np.broadcast_to(entry, beyond.shape), beyond - step])
+    after = np.stack([entry + step, beyond])
+    white = np.ones(3)
+    size = delta_e_2000(lab(before, white), lab(after, white))
+    excess: Array = size[..., 1:].max(axis=-1) - size[..., 0]
+    return excess.max(axis=(0, 1))
 
 
 def _lattice_spectra(
