@@ -51,14 +51,14 @@ def smooth_spots(
     around = _lattice_spectra(problem, boxes, points, boxes.rgb[rows])
     # Colours are linear in spectra, and so are steps in a box.
     steps = Steps(boxes.lattice, sensor, (sensor.light, *scene_lights(problem)))
-    entry, beside = map(steps.colours, (own, around))
+    entry, nearby = map(steps.colours, (own, around))
     beyond = np.stack(
         [steps.colours(_lattice_spectra(problem, boxes, points, rgb)) for rgb in exits]
     )
     share = np.ones((len(rows), 1))
     for _ in range(ROUNDS):
         weight = share[..., None]
-        excess = _steepest(weight * entry + (1 - weight) * beside, beyond, codes)
+        excess = _steepest(weight * entry + (1 - weight) * nearby, beyond, codes)
         share /= np.maximum(excess / LARGEST_STEP, 1)[:, None]
     answers = share * own + (1 - share) * around
     spots = share[:, 0] < 1
