@@ -75,7 +75,7 @@ def test_boxes_outside_do_not_reach_the_space_and_hold_their_entries(rgb):
     assert ((high <= 1e-12) | (low >= 1 - 1e-12)).any(axis=1).all()
     hits = found.find(rgb)
     own = hits.rows == hits.entry
-    assert hits.rows[own].tolist() == np.flatnonzero(widths).tolist()
+    assert hits.rows[own].tolist() == np.flatnonzero(found.half_width).tolist()
     assert not hits.lattice_weight[own].any()
 
 
